@@ -1,0 +1,328 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Meshes triangle geometry from the command line; ../../mesh.sh builds the suite and runs this.
+
+Runs the chain stage by stage through the VTK classes of ProjectionMesherFilters, with time and memory of each, and
+writes mesh.vtu, boundary.vtp, polyMesh/, section.png and surface.png. Exits 0 only when the mesh is valid.
+"""
+import argparse
+import math
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+EXAMPLE = os.path.join(HERE, "..", "..", "Testing", "Data", "pipe_junction_dirty.stl")
+EXAMPLE_FEATURE_SIZE = 0.0025
+STAGES = ("OctreeDecompose", "PaintFront", "DummyLayer", "Project", "ResolveFeatures", "BoundaryRefine")
+SHORT_NAMES = ("octree", "front", "layer", "project", "features", "refine")
+
+
+class UserError(Exception):
+    """What the user must read: one sentence."""
+
+
+# ---------------------------------------------------------------------------------------------------- options
+class Parser(argparse.ArgumentParser):
+    def __init__(self, **options):
+        super().__init__(**options)
+        self._negative_number_matcher = re.compile(r"^-(\d|\.\d|inf|nan)")  # also -1e-3, which argparse forgets
+
+    def error(self, message):
+        raise UserError(f"{message[:1].upper()}{message[1:]}; ./mesh.sh --help lists the options.")
+
+
+def parser():
+    p = Parser(prog="./mesh.sh", description="Meshes triangle geometry (STL, OBJ, PLY, VTP, ..., also .gz); without a "
+               "geometry, the pipe junction shipped as an example. Lengths are in the geometry's units.")
+    p.add_argument("geometry", nargs="*", metavar="GEOMETRY", help="files of triangles; each solid or group is a patch")
+    p.add_argument("-o", "--output", default="out", metavar="OUT", help="folder for the results (default: out)")
+    p.add_argument("--feature-size", type=float, metavar="L",
+                   help="largest size of the smallest cells (default: 1/50 of the geometry's diagonal)")
+    p.add_argument("--base-size", type=float, metavar="H", help="size of the largest cells (default: automatic)")
+    p.add_argument("--domain", type=float, nargs=6, metavar=("xmin", "ymin", "zmin", "xmax", "ymax", "zmax"),
+                   help="box to mesh; its sides become patches")
+    p.add_argument("--region", choices=("inside", "outside"),
+                   help="default: inside, or outside where a domain is given")
+    p.add_argument("--point", type=float, nargs=3, action="append", metavar=("x", "y", "z"),
+                   help="mesh the region that holds this point; may be repeated")
+    p.add_argument("--refine-box", type=float, nargs=7, action="append", default=[],
+                   metavar=("xmin", "ymin", "zmin", "xmax", "ymax", "zmax", "SIZE"),
+                   help="cells in the box are at most SIZE large; may be repeated")
+    p.add_argument("--layers", type=int, metavar="N", help="boundary layers (default: 3; 0: keep the one prism)")
+    p.add_argument("--first-height", type=float, metavar="H", help="height of the cell at the wall")
+    p.add_argument("--expansion", type=float, metavar="R", help="height ratio of neighbouring layers (default: 1.2)")
+    p.add_argument("--threads", type=int, default=0, metavar="N", help="threads to use (default: all)")
+    p.add_argument("--stop-after", type=stage_index, default=len(STAGES) - 1, metavar="STAGE",
+                   help="last stage to run: " + ", ".join(SHORT_NAMES))
+    return p
+
+
+def stage_index(text):
+    for names in (SHORT_NAMES, [s.lower() for s in STAGES]):
+        if text.lower() in names:
+            return names.index(text.lower())
+    raise argparse.ArgumentTypeError(f"'{text}' is no stage; the stages are {', '.join(SHORT_NAMES)}")
+
+
+def check_options(options):
+    """What can be said before the geometry is read."""
+    numbers = {"--feature-size": options.feature_size, "--base-size": options.base_size,
+               "--first-height": options.first_height, "--expansion": options.expansion}
+    for name, value in numbers.items():
+        if value is not None and not (math.isfinite(value) and value > 0):
+            raise UserError(f"{name} must be a number larger than zero, not {value:g}.")
+    if options.layers is not None and options.layers < 0:
+        raise UserError(f"--layers must not be negative, but it is {options.layers}.")
+    if options.threads < 0:
+        raise UserError(f"--threads must not be negative, but it is {options.threads}.")
+    for box in options.refine_box + ([options.domain] if options.domain else []):
+        if not all(map(math.isfinite, box)) or any(box[a] >= box[a + 3] for a in range(3)):
+            raise UserError("A box needs finite corners, each minimum below its maximum; got " +
+                            " ".join(f"{v:g}" for v in box[:6]) + ".")
+        if len(box) == 7 and box[6] <= 0:
+            raise UserError(f"The cell size of a --refine-box must be larger than zero, not {box[6]:g}.")
+    for point in options.point or []:
+        if not all(map(math.isfinite, point)):
+            raise UserError("The coordinates of a --point must be finite numbers.")
+    if options.layers == 0:
+        options.stop_after = min(options.stop_after, STAGES.index("ResolveFeatures"))
+    for path in options.geometry:
+        check_file(path)
+
+
+def check_file(path):
+    if not os.path.exists(path):
+        raise UserError(f"There is no file {path}.")
+    if os.path.isdir(path):
+        raise UserError(f"{path} is a folder; give files of triangles.")
+    if os.path.getsize(path) == 0:
+        raise UserError(f"The file {path} is empty.")
+
+
+# ---------------------------------------------------------------------------------------------------- running
+class Progress:
+    """A bar on standard error: rewritten in place on a terminal, one line a stage elsewhere."""
+    WIDTH = 30
+
+    def __init__(self):
+        self.live = sys.stderr.isatty()
+        self.shown = None
+
+    def show(self, stage, fraction, caption=""):
+        percent = int(100 * min(max(fraction, 0.0), 1.0))
+        if self.live and (stage, percent, caption) != self.shown:
+            self.shown = (stage, percent, caption)
+            sys.stderr.write("\r\033[K" + self.line(stage, percent, caption)[:shutil.get_terminal_size().columns - 1])
+            sys.stderr.flush()
+
+    def finish(self, stage, note):
+        sys.stderr.write(("\r\033[K" if self.live else "") + self.line(stage, 100, note) + "\n")
+        sys.stderr.flush()
+
+    def clear(self):
+        if self.live and self.shown:
+            sys.stderr.write("\r\033[K")
+
+    def line(self, stage, percent, text):
+        filled = self.WIDTH * percent // 100
+        return f"[{'#' * filled}{'.' * (self.WIDTH - filled)}] {percent:3d}% {stage:16s} {text}"
+
+
+def peak_memory():
+    """Peak resident memory of this process in MB since it was last reset."""
+    try:
+        with open("/proc/self/status", encoding="ascii") as status:
+            return next(int(line.split()[1]) for line in status if line.startswith("VmHWM")) / 1024
+    except (OSError, StopIteration):
+        return float("nan")
+
+
+def reset_peak_memory():
+    try:
+        with open("/proc/self/clear_refs", "w", encoding="ascii") as control:
+            control.write("5")
+    except OSError:
+        pass  # then a stage's peak includes those before it
+
+
+class Runner:
+    """Updates filters one after the other; collects seconds and peak memory, and turns errors into UserError."""
+
+    def __init__(self):
+        self.progress = Progress()
+        self.measured = []  # (stage, seconds, MB)
+        self.stopped = False
+        signal.signal(signal.SIGINT, self.stop)
+        signal.signal(signal.SIGTERM, self.stop)
+
+    def stop(self, *_):
+        self.stopped = True
+
+    def run(self, stage, algorithm, action=None):
+        """Updates algorithm, or calls action in its place (a writer's Write)."""
+        errors = []
+
+        def on_error(_caller, _event, text):
+            errors.append(text)
+        on_error.CallDataType = "string0"
+
+        def on_progress(caller, _event):
+            if self.stopped:
+                caller.SetAbortExecute(1)
+            self.progress.show(stage, caller.GetProgress(), caller.GetProgressText() or "")
+
+        algorithm.AddObserver("ErrorEvent", on_error)
+        algorithm.GetExecutive().AddObserver("ErrorEvent", lambda *_: None)  # it only says that the filter failed
+        algorithm.AddObserver("ProgressEvent", on_progress)
+        reset_peak_memory()
+        start = time.perf_counter()
+        self.progress.show(stage, 0)
+        (action or algorithm.Update)()
+        seconds, megabytes = time.perf_counter() - start, peak_memory()
+        if self.stopped or errors:
+            self.progress.clear()
+            raise UserError("Stopped on request." if self.stopped else sentence(errors[0]))
+        self.measured.append((stage, seconds, megabytes))
+        self.progress.finish(stage, f"{seconds:.2f} s")
+
+
+def sentence(error):
+    """The message alone of an error that VTK has decorated with file, line and object."""
+    text = re.sub(r"^.*?\(0x[0-9a-f]+\): ", "", error.strip(), flags=re.S)
+    return " ".join(text.split())
+
+
+def vtk_box(box):
+    """xmin ymin zmin xmax ymax zmax in VTK's order."""
+    return box[0], box[3], box[1], box[4], box[2], box[5]
+
+
+def make_filters(pm, options):
+    """The stages' filters in order, with the user's options."""
+    octree, front = pm.vtkOctreeDecompose(), pm.vtkPaintFront()
+    octree.SetFeatureSize(options.feature_size or 0)
+    octree.SetBaseSize(options.base_size or 0)
+    if options.domain:
+        octree.SetUseDomain(True)
+        octree.SetDomainBounds(*vtk_box(options.domain))
+    for box in options.refine_box:
+        octree.AddRefineBox(*vtk_box(box), box[6])
+    if options.point:
+        front.SetRegionToPoints()
+        for point in options.point:
+            front.AddSeedPoint(*point)
+    elif (options.region or ("outside" if options.domain else "inside")) == "outside":
+        front.SetRegionToOutside()
+    refine = pm.vtkBoundaryRefine()
+    if options.layers:
+        refine.SetLayers(options.layers)
+    if options.first_height:
+        refine.SetFirstHeight(options.first_height)
+    if options.expansion:
+        refine.SetExpansionRatio(options.expansion)
+    filters = [octree, front, pm.vtkDummyLayer(), pm.vtkProject(), pm.vtkResolveFeatures(), refine]
+    for stage in filters:
+        stage.SetThreads(options.threads)
+    return filters[:options.stop_after + 1]
+
+
+def read_geometry(pm, runner, options):
+    reader = pm.vtkSurfaceReader()
+    for path in options.geometry:
+        reader.AddFileName(path)
+    runner.run("read", reader)
+    return reader.GetOutputDataObject(0)
+
+
+def mesh_geometry(pm, runner, options, geometry):
+    """Runs the stages; the filters, of which the last still holds its outputs."""
+    filters = make_filters(pm, options)
+    grid = None
+    for name, stage in zip(STAGES, filters):
+        inputs = [data for data in (grid, geometry) if data is not None]
+        for port in range(stage.GetNumberOfInputPorts()):
+            stage.SetInputDataObject(port, inputs[port])
+        runner.run(name, stage)
+        grid = stage.GetOutputDataObject(0)
+        for port in range(stage.GetNumberOfInputPorts()):
+            stage.SetInputDataObject(port, None)  # free what is done with
+    return filters
+
+
+# ---------------------------------------------------------------------------------------------------- results
+def write_results(pm, runner, options, last):
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter
+    outputs = [(vtkXMLUnstructuredGridWriter(), "mesh.vtu")]
+    if last.GetNumberOfOutputPorts() > 1:
+        outputs.append((vtkXMLPolyDataWriter(), "boundary.vtp"))
+    for port, (writer, name) in enumerate(outputs):
+        writer.SetFileName(os.path.join(options.output, name))
+        writer.SetInputDataObject(last.GetOutputDataObject(port))
+        writer.SetCompressorTypeToLZ4()
+        writer.SetDataModeToBinary()  # Debian 12's expat, as patched, makes VTK fail to read appended data
+        runner.run(f"write {name}", writer, writer.Write)
+    if options.stop_after > 0:
+        writer = pm.vtkPolyMeshWriter()
+        writer.SetInputDataObject(last.GetOutputDataObject(0))
+        writer.SetFileName(os.path.join(options.output, "polyMesh"))
+        runner.run("write polyMesh", writer, writer.Write)
+
+
+def make_pictures(options):
+    """In a process of its own: whatever a missing display does there, the mesh is safe."""
+    command = ["pvpython", os.path.join(HERE, "mesh_pictures.py"), options.output]
+    if shutil.which("xvfb-run"):
+        command = ["xvfb-run", "-a"] + command
+    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
+    if done.returncode != 0:
+        lines = done.stdout.decode(errors="replace").strip().splitlines()
+        print("No pictures could be made: " + (lines[-1] if lines else "the renderer failed."), file=sys.stderr)
+
+
+def clear_output(options):
+    """Results of an earlier run must not be taken for this one's."""
+    try:
+        os.makedirs(options.output, exist_ok=True)
+        for name in ("mesh.vtu", "boundary.vtp", "section.png", "surface.png"):
+            if os.path.exists(os.path.join(options.output, name)):
+                os.remove(os.path.join(options.output, name))
+        shutil.rmtree(os.path.join(options.output, "polyMesh"), ignore_errors=True)
+    except OSError as error:
+        raise UserError(f"The folder {options.output} cannot be written: {error.strerror}.") from error
+
+
+def main(arguments):
+    options = parser().parse_intermixed_args(arguments)
+    check_options(options)
+    if not options.geometry:
+        options.geometry = [EXAMPLE]
+        options.feature_size = options.feature_size or EXAMPLE_FEATURE_SIZE
+    clear_output(options)
+    from projectionmesher import ProjectionMesherFilters as pm
+    import mesh_report
+    runner = Runner()
+    geometry = read_geometry(pm, runner, options)
+    filters = mesh_geometry(pm, runner, options, geometry)
+    validity = None
+    if options.stop_after > 0:
+        validity = pm.vtkMeshValidity()
+        validity.SetInputDataObject(filters[-1].GetOutputDataObject(0))
+        runner.run("validity", validity)
+    write_results(pm, runner, options, filters[-1])
+    make_pictures(options)
+    mesh_report.print_report(filters, validity, runner.measured)
+    print(f"Results are in {options.output}")
+    if validity and validity.GetViolations() > 0:
+        raise UserError(f"The mesh is not valid: {sentence(validity.GetDescription())}")
+
+
+if __name__ == "__main__":
+    try:
+        main(sys.argv[1:])
+    except UserError as error:
+        print(f"mesh.sh: {error}", file=sys.stderr)
+        sys.exit(1)

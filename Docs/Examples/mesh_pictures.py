@@ -1,0 +1,261 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pictures of a mesh: mesh_pictures.py FOLDER reads mesh.vtu and boundary.vtp there and writes section.png, a plane cut
+with mesh lines, and surface.png, the boundary coloured by patch. Run with pvpython; without a display, under xvfb-run."""
+import os
+import sys
+
+import numpy
+import vtkmodules.vtkRenderingFreeType  # noqa: F401  text
+import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  the renderer
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkLookupTable
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPlane, vtkPolyData
+from vtkmodules.vtkFiltersCore import vtkCutter, vtkThreshold
+from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
+from vtkmodules.vtkIOImage import vtkPNGWriter
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
+from vtkmodules.vtkRenderingAnnotation import vtkLegendBoxActor
+from vtkmodules.vtkRenderingCore import (vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow, vtkTextActor,
+                                         vtkWindowToImageFilter)
+from vtkmodules.vtkFiltersSources import vtkPlaneSource
+
+SIZE = (1400, 1000)
+BACKGROUND = (0.96, 0.96, 0.95)
+LINES = (0.16, 0.18, 0.21)
+TEXT = (0.1, 0.1, 0.1)
+# For patches: even in lightness, told apart by the colour-blind.
+COLOURS = ((0.72, 0.76, 0.80), (0.88, 0.48, 0.37), (0.41, 0.64, 0.48), (0.33, 0.53, 0.75), (0.91, 0.76, 0.42),
+           (0.63, 0.49, 0.72), (0.45, 0.73, 0.75), (0.85, 0.60, 0.72), (0.65, 0.55, 0.43), (0.60, 0.72, 0.33))
+CELL_COLOURS = ((0.80, 0.86, 0.91), (0.97, 0.84, 0.67))  # inner cells, layer cells
+
+
+def read(reader, path):
+    reader.SetFileName(path)
+    reader.Update()
+    return reader.GetOutput()
+
+
+def lookup(colours, count):
+    table = vtkLookupTable()
+    table.SetNumberOfTableValues(count)
+    for i in range(count):
+        table.SetTableValue(i, *colours[i % len(colours)])
+    table.SetTableRange(-0.5, count - 0.5)
+    return table
+
+
+def actor_of(data, table=None):
+    mapper = vtkPolyDataMapper()
+    mapper.SetInputData(data)
+    if table:
+        mapper.SetScalarModeToUseCellData()
+        mapper.SetLookupTable(table)
+        mapper.UseLookupTableScalarRangeOn()
+    else:
+        mapper.ScalarVisibilityOff()
+    actor = vtkActor()
+    actor.SetMapper(mapper)
+    return actor
+
+
+# --------------------------------------------------------------------------------------------------- the section
+def cell_lines(cut):
+    """The edges of a cut that two different cells, or one cell and nothing, share: the mesh lines, whatever triangles
+    the cutter made of a cell."""
+    connectivity = vtk_to_numpy(cut.GetPolys().GetConnectivityArray())
+    offsets = vtk_to_numpy(cut.GetPolys().GetOffsetsArray())
+    lengths = numpy.diff(offsets)
+    cell = numpy.repeat(vtk_to_numpy(cut.GetCellData().GetArray("Cell")), lengths)
+    following = numpy.arange(len(connectivity)) + 1
+    following[offsets[1:] - 1] = offsets[:-1]
+    ends = numpy.sort(numpy.stack([connectivity, connectivity[following]], axis=1), axis=1)
+    rows = numpy.unique(numpy.column_stack([ends, cell]), axis=0, return_counts=True)
+    inside = rows[1] > 1  # both sides in one cell
+    ends = numpy.unique(rows[0][~inside][:, :2], axis=0).astype(numpy.int64)
+    return poly_lines(cut.GetPoints(), ends)
+
+
+def poly_lines(points, ends):
+    cells = vtkCellArray()
+    connectivity = numpy_to_vtkIdTypeArray(numpy.ascontiguousarray(ends).ravel(), deep=True)
+    offsets = numpy_to_vtkIdTypeArray(numpy.arange(0, 2 * len(ends) + 1, 2), deep=True)
+    cells.SetData(offsets, connectivity)
+    lines = vtkPolyData()
+    lines.SetPoints(points)
+    lines.SetLines(cells)
+    return lines
+
+
+def cut_grid(grid, axis, position):
+    """The cells' polygons in the plane, with the cells' ids and whether they are layer cells."""
+    ids = numpy_to_vtkIdTypeArray(numpy.arange(grid.GetNumberOfCells()), deep=True)
+    ids.SetName("Cell")
+    grid.GetCellData().AddArray(ids)
+    plane = vtkPlane()
+    plane.SetNormal(*(1.0 if a == axis else 0.0 for a in range(3)))
+    plane.SetOrigin(*(position if a == axis else 0.0 for a in range(3)))
+    cutter = vtkCutter()
+    cutter.SetCutFunction(plane)
+    cutter.SetInputData(grid)
+    cutter.GenerateTrianglesOff()
+    cutter.Update()
+    cut = cutter.GetOutput()
+    layer = cut.GetCellData().GetArray("Layer")
+    kind = (vtk_to_numpy(layer) > 0).astype(numpy.uint8) if layer else numpy.zeros(cut.GetNumberOfCells(), numpy.uint8)
+    kind = numpy_to_vtk(kind, deep=True)
+    kind.SetName("Kind")
+    cut.GetCellData().SetScalars(kind)
+    return cut
+
+
+def section(grid, focus, path):
+    """The plane through the middle of focus, square to its shortest side; slightly beside the middle, where a grid is
+    likely to have a plane of faces of its own."""
+    sides = [focus[2 * a + 1] - focus[2 * a] for a in range(3)]
+    axis = sides.index(min(sides))
+    position = focus[2 * axis] + 0.5037 * sides[axis]
+    cut = cut_grid(grid, axis, position)
+    if cut.GetNumberOfCells() == 0:
+        raise RuntimeError("the section is empty")
+    face = actor_of(cut, lookup(CELL_COLOURS, 2))
+    face.GetProperty().LightingOff()
+    lines = actor_of(cell_lines(cut))
+    lines.GetProperty().SetColor(*LINES)
+    lines.GetProperty().SetLineWidth(1.2)
+    lines.GetProperty().LightingOff()
+    renderer = new_renderer([face, lines], f"{'xyz'[axis]} = {position:.4g}")
+    camera = renderer.GetActiveCamera()
+    camera.ParallelProjectionOn()
+    direction = [(0.0, 0.0, 0.0), (0.0, 0.0, 0.0)]
+    direction, up = (((1, 0, 0), (0, 0, 1)), ((0, -1, 0), (0, 0, 1)), ((0, 0, 1), (0, 1, 0)))[axis]
+    frame(renderer, focus, direction, up, 1.0)
+    save(renderer, path)
+
+
+# ---------------------------------------------------------------------------------------------------- the surface
+def shown_patches(boundary):
+    """Ids of the patches worth a look: the walls, where sides of a domain would hide them; else all."""
+    types = boundary.GetFieldData().GetAbstractArray("PatchTypes")
+    present = numpy.unique(vtk_to_numpy(boundary.GetCellData().GetArray("PatchId")))
+    walls = [int(i) for i in present if types.GetValue(int(i)) == "wall"]
+    return walls or [int(i) for i in present]
+
+
+def only_patches(boundary, patches):
+    keep = numpy.isin(vtk_to_numpy(boundary.GetCellData().GetArray("PatchId")), patches)
+    flags = numpy_to_vtk(keep.astype(numpy.uint8), deep=True)
+    flags.SetName("Shown")
+    boundary.GetCellData().AddArray(flags)
+    threshold = vtkThreshold()
+    threshold.SetInputData(boundary)
+    threshold.SetInputArrayToProcess(0, 0, 0, 1, "Shown")
+    threshold.SetLowerThreshold(0.5)
+    threshold.SetThresholdFunction(vtkThreshold.THRESHOLD_UPPER)
+    surface = vtkGeometryFilter()
+    surface.SetInputConnection(threshold.GetOutputPort())
+    surface.Update()
+    shown = surface.GetOutput()
+    shown.GetCellData().SetActiveScalars("PatchId")
+    return shown
+
+
+def surface(shown, names, patches, path):
+    table = lookup(COLOURS, len(names))
+    actor = actor_of(shown, table)
+    actor.GetProperty().EdgeVisibilityOn()
+    actor.GetProperty().SetEdgeColor(*LINES)
+    actor.GetProperty().SetInterpolationToFlat()
+    actor.GetProperty().SetAmbient(0.25)
+    actor.GetProperty().SetDiffuse(0.75)
+    renderer = new_renderer([actor], None)
+    if len(patches) <= 12:
+        renderer.AddActor(legend(names, patches, table))
+    frame(renderer, shown.GetBounds(), (-0.45, -0.8, 0.4), (0, 0, 1), 1.25)
+    save(renderer, path)
+
+
+def legend(names, patches, table):
+    box = vtkLegendBoxActor()
+    box.SetNumberOfEntries(len(patches))
+    square = vtkPlaneSource()
+    square.Update()
+    for row, patch in enumerate(patches):
+        box.SetEntry(row, square.GetOutput(), names[patch], table.GetTableValue(patch)[:3])
+        box.SetEntryColor(row, *table.GetTableValue(patch)[:3])
+    box.GetEntryTextProperty().SetColor(*TEXT)
+    box.BorderOff()
+    box.GetPositionCoordinate().SetValue(0.02, 0.02)
+    box.GetPosition2Coordinate().SetValue(0.18, 0.035 * len(patches))
+    return box
+
+
+# -------------------------------------------------------------------------------------------------------- drawing
+def new_renderer(actors, caption):
+    renderer = vtkRenderer()
+    renderer.SetBackground(*BACKGROUND)
+    for actor in actors:
+        renderer.AddActor(actor)
+    if caption:
+        text = vtkTextActor()
+        text.SetInput(caption)
+        text.SetPosition(24, 20)
+        text.GetTextProperty().SetColor(*TEXT)
+        text.GetTextProperty().SetFontSize(22)
+        renderer.AddActor(text)
+    return renderer
+
+
+def frame(renderer, bounds, direction, up, zoom):
+    camera = renderer.GetActiveCamera()
+    middle = [(bounds[2 * a] + bounds[2 * a + 1]) / 2 for a in range(3)]
+    camera.SetFocalPoint(*middle)
+    camera.SetPosition(*(m + d for m, d in zip(middle, direction)))
+    camera.SetViewUp(*up)
+    renderer.ResetCamera(bounds)
+    if camera.GetParallelProjection():
+        sides = sorted((bounds[2 * a + 1] - bounds[2 * a] for a in range(3)), reverse=True)
+        camera.SetParallelScale(0.53 * max(sides[1], sides[0] * SIZE[1] / SIZE[0]))
+    camera.Zoom(zoom)
+    renderer.ResetCameraClippingRange()
+
+
+def save(renderer, path):
+    window = vtkRenderWindow()
+    window.SetOffScreenRendering(1)
+    window.SetMultiSamples(8)
+    window.SetSize(*SIZE)
+    window.AddRenderer(renderer)
+    window.Render()
+    image = vtkWindowToImageFilter()
+    image.SetInput(window)
+    image.ReadFrontBufferOff()
+    writer = vtkPNGWriter()
+    writer.SetInputConnection(image.GetOutputPort())
+    writer.SetFileName(path)
+    writer.Write()
+
+
+def grown(bounds, part):
+    middle = [(bounds[2 * a] + bounds[2 * a + 1]) / 2 for a in range(3)]
+    half = [(1 + part) * (bounds[2 * a + 1] - bounds[2 * a]) / 2 for a in range(3)]
+    return [m + s * h for m, h in zip(middle, half) for s in (-1, 1)]
+
+
+def main(folder):
+    grid = read(vtkXMLUnstructuredGridReader(), os.path.join(folder, "mesh.vtu"))
+    focus = grid.GetBounds()
+    boundary_file = os.path.join(folder, "boundary.vtp")
+    if os.path.exists(boundary_file):
+        boundary = read(vtkXMLPolyDataReader(), boundary_file)
+        field = boundary.GetFieldData().GetAbstractArray("PatchNames")
+        names = [field.GetValue(i) for i in range(field.GetNumberOfValues())]
+        patches = shown_patches(boundary)
+        shown = only_patches(boundary, patches)
+        surface(shown, names, patches, os.path.join(folder, "surface.png"))
+        whole = shown.GetNumberOfCells() == boundary.GetNumberOfCells()
+        focus = shown.GetBounds() if whole else grown(shown.GetBounds(), 0.25)
+    section(grid, focus, os.path.join(folder, "section.png"))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])

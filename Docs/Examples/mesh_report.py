@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The table that mesh.py prints: what the mesh consists of, how good it is and what it cost."""
+from vtkmodules.vtkCommonDataModel import (VTK_HEXAHEDRON, VTK_POLYHEDRON, VTK_PYRAMID, VTK_TETRA, VTK_VOXEL,
+                                           VTK_WEDGE)
+from vtkmodules.util.numpy_support import vtk_to_numpy
+import numpy
+
+TYPE_NAMES = {VTK_VOXEL: "voxels", VTK_HEXAHEDRON: "hexahedra", VTK_WEDGE: "wedges", VTK_TETRA: "tetrahedra",
+              VTK_PYRAMID: "pyramids", VTK_POLYHEDRON: "polyhedra"}
+
+
+def rows(title, pairs):
+    print(f"\n{title}")
+    for name, value in pairs:
+        print(f"  {name:38s} {value}")
+
+
+def cells(grid):
+    types = numpy.bincount(vtk_to_numpy(grid.GetCellTypesArray()), minlength=max(TYPE_NAMES) + 1)
+    pairs = [("cells", f"{grid.GetNumberOfCells():,}")]
+    pairs += [(f"  {name}", f"{types[kind]:,}") for kind, name in TYPE_NAMES.items() if types[kind]]
+    return pairs + [("points", f"{grid.GetNumberOfPoints():,}")]
+
+
+def patches(boundary):
+    field = boundary.GetFieldData()
+    names, kinds = field.GetAbstractArray("PatchNames"), field.GetAbstractArray("PatchTypes")
+    of_face = vtk_to_numpy(boundary.GetCellData().GetArray("PatchId"))
+    counts = numpy.bincount(of_face, minlength=names.GetNumberOfValues())
+    return [(names.GetValue(i), f"{counts[i]:,} faces ({kinds.GetValue(i)})") for i in range(len(counts))]
+
+
+def worst_measures(v):
+    return [("faces and cells outside the limits", f"{v.GetViolations():,}"),
+            ("smallest volume, in finest cells", f"{v.GetWorstVolume():.4g}"),
+            ("smallest central tetrahedron, same", f"{v.GetWorstTet():.4g}"),
+            ("largest angle internal / boundary", f"{v.GetWorstAngleInternal():.1f} / {v.GetWorstAngleBoundary():.1f} deg"),
+            ("largest warpage", f"{v.GetWorstWarpage():.1f} deg"),
+            ("smallest degradation internal / boundary", f"{v.GetWorstEtaInternal():.3f} / {v.GetWorstEtaBoundary():.3f}"),
+            ("largest skewness internal / boundary", f"{v.GetWorstSkewInternal():.2f} / {v.GetWorstSkewBoundary():.2f}"),
+            ("largest openness", f"{v.GetWorstOpenness():.1e}"),
+            ("total volume", f"{v.GetTotalVolume():.6g}")]
+
+
+def share(part, whole):
+    return f"{part:,.4g} of {whole:,.4g}" + (f" ({100 * part / whole:.1f}%)" if whole else "")
+
+
+def features(stage):
+    return [("length of feature edges resolved", share(stage.GetResolvedLength(), stage.GetFeatureLength())),
+            ("corners resolved", share(stage.GetResolvedCorners(), stage.GetCorners()))]
+
+
+def layers(stage):
+    pairs = [("wall faces", f"{stage.GetWallFaces():,}")]
+    for n in range(1, stage.GetLayers() + 1):
+        pairs.append((f"  with {n} layer{'s' if n > 1 else ''}", share(stage.GetFacesWithLayers(n), stage.GetWallFaces())))
+    return pairs
+
+
+def print_report(filters, validity, measured):
+    grid = filters[-1].GetOutputDataObject(0)
+    rows("Mesh", cells(grid))
+    if validity:
+        rows("Faces", [("internal", f"{validity.GetInternalFaces():,}"),
+                       ("boundary", f"{validity.GetBoundaryFaces():,}")])
+        rows("Patches", patches(filters[-1].GetOutputDataObject(1)))
+        rows("Worst measures", worst_measures(validity))
+    if len(filters) > 4:
+        rows("Features", features(filters[4]))
+    if len(filters) > 5:
+        rows("Layers", layers(filters[5]))
+    print("\nCost" + 34 * " " + f"{'seconds':>9s} {'peak MB':>9s}")
+    for stage, seconds, megabytes in measured:
+        print(f"  {stage:34s} {seconds:11.2f} {megabytes:9.0f}")
+    print(f"  {'total, largest':34s} {sum(m[1] for m in measured):11.2f} {max(m[2] for m in measured):9.0f}")
+    print(flush=True)

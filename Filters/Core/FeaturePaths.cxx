@@ -1,0 +1,375 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FeaturePaths.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+#include "CurveTracer.h"
+
+namespace pm {
+
+CurveTable::CurveTable(const FeatureGraph& graph) : graph_(graph) {
+  const auto& segments = graph.segments();
+  const std::size_t curves = graph.curves().size();
+  first_.assign(curves + 1, 0);
+  length_.assign(curves, 0.0);
+  arc_.resize(segments.size());
+  for (std::size_t s = 0; s < segments.size(); ++s) {
+    double& length = length_[segments[s].curve];
+    arc_[s] = length;
+    length += (segments[s].b - segments[s].a).norm();
+    ++first_[segments[s].curve + 1];
+  }
+  for (std::size_t c = 0; c < curves; ++c) first_[c + 1] += first_[c];
+}
+
+double CurveTable::project(const Vec3& p, Id segment, Vec3& on) const {
+  const FeatureSegment& s = graph_.segments()[segment];
+  const Vec3 way = s.b - s.a;
+  const double length2 = way.squaredNorm();
+  const double t = length2 > 0 ? std::clamp((p - s.a).dot(way) / length2, 0.0, 1.0) : 0.0;
+  on = s.a + t * way;
+  return arc_[segment] + t * std::sqrt(length2);
+}
+
+Vec3 CurveTable::at(Id curve, double s) const {
+  const double length = length_[curve];
+  if (graph_.curves()[curve].closed && length > 0)
+    s -= length * std::floor(s / length);
+  else
+    s = std::clamp(s, 0.0, length);
+  const auto first = arc_.begin() + first_[curve], last = arc_.begin() + first_[curve + 1];
+  const auto it = std::max(first, std::upper_bound(first, last, s) - 1);
+  const FeatureSegment& segment = graph_.segments()[it - arc_.begin()];
+  const double part = (segment.b - segment.a).norm();
+  return segment.a + (part > 0 ? std::min(1.0, (s - *it) / part) : 0.0) * (segment.b - segment.a);
+}
+
+namespace {
+
+struct NearCorner {
+  double distance;  // length scales
+  Id corner, row;
+};
+
+/// All pairs of a wall node and a curve or corner near it.
+struct Neighbourhood {
+  Csr<NearNode> curves;             // #curves rows, ascending by wall row
+  std::vector<NearCorner> corners;  // nearest first
+};
+
+class PathFinder {
+ public:
+  PathFinder(const PolyMesh& mesh, const WallSurface& wall, const FeatureGraph& graph,
+             const FeaturePathOptions& options, const std::vector<float>& penalty)
+      : mesh_(mesh), wall_(wall), graph_(graph), options_(options), penalty_(penalty), table_(graph) {}
+  FeaturePaths find();
+
+ private:
+  struct Block {
+    std::vector<std::pair<Id, NearNode>> curves;
+    std::vector<NearCorner> corners;
+  };
+  void gather();
+  void gatherNode(Id row, Block& block) const;
+  void addCorner(Id corner, Id row, Block& block) const;
+  bool reachable(Id row, const Vec3& target) const;
+  void mergeCorners();
+  Id findRepresentative(Id corner) const;
+  void placeCorners();
+  void traceCurve(CurveTracer& tracer, Id curve);
+  CurveTracer::Task makeTask(Id curve, double scale) const;
+  void chooseLoopStart(CurveTracer::Task& task) const;
+  double curveScale(Id curve) const;
+  void keepPiece(Id curve, const std::vector<PathNode>& piece, double shift, double scale);
+  std::vector<double> spread(const std::vector<PathNode>& piece, double scale, bool firstFixed,
+                             bool lastFixed) const;
+  void collectTargets();
+
+  const PolyMesh& mesh_;
+  const WallSurface& wall_;
+  const FeatureGraph& graph_;
+  const FeaturePathOptions& options_;
+  const std::vector<float>& penalty_;
+  CurveTable table_;
+  Neighbourhood near_;
+  std::vector<double> cornerScale_;  // #corners length scale, 0 where no wall node is near
+  std::vector<Id> representative_;   // #corners
+  std::vector<Id> cornerRow_;        // #corners wall row, of representatives
+  std::vector<NodeTarget> taken_;    // #W
+  FeaturePaths result_;
+};
+
+/// A node on a domain side can only lie where the feature meets that side.
+bool PathFinder::reachable(Id row, const Vec3& target) const {
+  const Id p = wall_.nodes[row];
+  const std::uint8_t fixed = mesh_.fixed.empty() ? 0 : mesh_.fixed[p];
+  for (int a = 0; a < 3; ++a)
+    if ((fixed >> a & 1) && std::abs(target[a] - mesh_.points[p][a]) > 0.05 * wall_.scale[row]) return false;
+  return true;
+}
+
+void PathFinder::addCorner(Id corner, Id row, Block& block) const {
+  if (corner == kNone) return;
+  const Vec3& at = graph_.corners()[corner];
+  const double d = (mesh_.points[wall_.nodes[row]] - at).norm() / wall_.scale[row];
+  if (d <= options_.cornerReach && reachable(row, at))
+    block.corners.push_back({d + (penalty_.empty() ? 0.0 : penalty_[row]), corner, row});
+}
+
+void PathFinder::gatherNode(Id row, Block& block) const {
+  const Vec3& p = mesh_.points[wall_.nodes[row]];
+  const double scale = wall_.scale[row];
+  Box box;
+  const Vec3 reach = Vec3::Constant(scale * std::max(options_.reach, options_.cornerReach));
+  box.add(p - reach);
+  box.add(p + reach);
+  const std::vector<Id> ids = graph_.segmentsNear(box);
+  const auto& segments = graph_.segments();
+  for (std::size_t i = 0; i < ids.size();) {
+    const Id curve = segments[ids[i]].curve;
+    double best = std::numeric_limits<double>::infinity(), arc = 0;
+    Vec3 on = p, q;
+    bool first = false, last = false;
+    for (; i < ids.size() && segments[ids[i]].curve == curve; ++i) {
+      const double s = table_.project(p, ids[i], q);
+      const double d2 = (q - p).squaredNorm();
+      if (d2 < best) best = d2, arc = s, on = q;
+      first |= ids[i] == table_.firstSegment(curve);
+      last |= ids[i] + 1 == table_.endSegment(curve);
+    }
+    const double d = std::sqrt(best) / scale;
+    if (d <= options_.reach && reachable(row, on)) {
+      const double extra = penalty_.empty() ? 0.0 : penalty_[row];
+      block.curves.push_back({curve, {row, static_cast<float>(d + extra), arc}});
+    }
+    if (first) addCorner(graph_.curves()[curve].startCorner, row, block);
+    if (last) addCorner(graph_.curves()[curve].endCorner, row, block);
+  }
+}
+
+void PathFinder::gather() {
+  constexpr Id kBlock = 512;
+  std::vector<Block> blocks((wall_.size() + kBlock - 1) / kBlock);
+  tbb::parallel_for(std::size_t(0), blocks.size(), [&](std::size_t b) {
+    const Id first = static_cast<Id>(b) * kBlock, last = std::min(wall_.size(), first + kBlock);
+    for (Id row = first; row < last; ++row) gatherNode(row, blocks[b]);
+  });
+  std::vector<Id>& offsets = near_.curves.offsets;
+  offsets.assign(graph_.curves().size() + 1, 0);
+  for (const Block& block : blocks)
+    for (const auto& pair : block.curves) ++offsets[pair.first + 1];
+  for (std::size_t c = 1; c < offsets.size(); ++c) offsets[c] += offsets[c - 1];
+  near_.curves.values.resize(offsets.back());
+  std::vector<Id> next(offsets.begin(), offsets.end() - 1);
+  for (const Block& block : blocks) {
+    for (const auto& pair : block.curves) near_.curves.values[next[pair.first]++] = pair.second;
+    near_.corners.insert(near_.corners.end(), block.corners.begin(), block.corners.end());
+  }
+  const auto order = [](const NearCorner& a, const NearCorner& b) {
+    return std::tie(a.distance, a.corner, a.row) < std::tie(b.distance, b.corner, b.row);
+  };
+  const auto same = [](const NearCorner& a, const NearCorner& b) {
+    return a.corner == b.corner && a.row == b.row;
+  };
+  std::sort(near_.corners.begin(), near_.corners.end(), order);
+  near_.corners.erase(std::unique(near_.corners.begin(), near_.corners.end(), same), near_.corners.end());
+}
+
+/// The nearest corner that stands for itself within the merging distance, kNone when there is none.
+Id PathFinder::findRepresentative(Id corner) const {
+  const Vec3& at = graph_.corners()[corner];
+  const double reach = options_.mergeCorners * cornerScale_[corner];
+  Box box;
+  box.add(at - Vec3::Constant(reach));
+  box.add(at + Vec3::Constant(reach));
+  Id best = kNone;
+  double bestDistance = reach;
+  for (Id s : graph_.segmentsNear(box)) {
+    const FeatureCurve& curve = graph_.curves()[graph_.segments()[s].curve];
+    for (Id c : {curve.startCorner, curve.endCorner}) {
+      if (c == kNone || representative_[c] != c) continue;
+      const double d = (graph_.corners()[c] - at).norm();
+      if (d < bestDistance || (d == bestDistance && c < best)) best = c, bestDistance = d;
+    }
+  }
+  return best;
+}
+
+/// Corners where most curves meet stand for the others around them.
+void PathFinder::mergeCorners() {
+  const std::size_t count = graph_.corners().size();
+  cornerScale_.assign(count, 0.0);
+  for (const NearCorner& n : near_.corners)
+    if (cornerScale_[n.corner] == 0) cornerScale_[n.corner] = wall_.scale[n.row];
+  std::vector<Id> valence(count, 0), order(count);
+  for (const FeatureCurve& curve : graph_.curves())
+    for (Id c : {curve.startCorner, curve.endCorner})
+      if (c != kNone) ++valence[c];
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](Id a, Id b) { return valence[a] > valence[b]; });
+  representative_.assign(count, kNone);
+  for (Id c : order) {
+    const Id r = cornerScale_[c] > 0 ? findRepresentative(c) : kNone;
+    representative_[c] = r == kNone ? c : r;
+  }
+}
+
+void PathFinder::placeCorners() {
+  cornerRow_.assign(graph_.corners().size(), kNone);
+  for (const NearCorner& n : near_.corners) {
+    if (representative_[n.corner] != n.corner || cornerRow_[n.corner] != kNone) continue;
+    if (taken_[n.row].node != kNone) continue;
+    cornerRow_[n.corner] = n.row;
+    taken_[n.row] = {wall_.nodes[n.row], kNone, n.corner, graph_.corners()[n.corner]};
+  }
+  result_.cornerNode.assign(graph_.corners().size(), kNone);
+  for (std::size_t c = 0; c < cornerRow_.size(); ++c) {
+    cornerRow_[c] = cornerRow_[representative_[c]];
+    if (cornerRow_[c] != kNone) result_.cornerNode[c] = wall_.nodes[cornerRow_[c]];
+  }
+}
+
+double PathFinder::curveScale(Id curve) const {
+  double sum = 0;
+  for (const NearNode& n : near_.curves[curve]) sum += wall_.scale[n.row];
+  return sum / static_cast<double>(near_.curves[curve].size());
+}
+
+/// A closed curve starts at the free node closest to it.
+void PathFinder::chooseLoopStart(CurveTracer::Task& task) const {
+  const double length = table_.length(task.curve);
+  const auto best =
+      std::min_element(task.nodes.begin(), task.nodes.end(), [](const NearNode& a, const NearNode& b) {
+        return std::tie(a.distance, a.row) < std::tie(b.distance, b.row);
+      });
+  if (best == task.nodes.end()) return;
+  task.startRow = task.endRow = best->row;
+  task.startDistance = task.endDistance = best->distance;
+  task.arcShift = best->arc;
+  task.nodes.erase(best);
+  for (NearNode& n : task.nodes) {
+    n.arc -= task.arcShift;
+    if (n.arc < 0) n.arc += length;
+  }
+}
+
+CurveTracer::Task PathFinder::makeTask(Id curve, double scale) const {
+  const FeatureCurve& shape = graph_.curves()[curve];
+  CurveTracer::Task task;
+  task.curve = curve;
+  task.scale = scale;
+  for (const NearNode& n : near_.curves[curve])
+    if (taken_[n.row].node == kNone) task.nodes.push_back(n);
+  if (shape.closed) {
+    chooseLoopStart(task);
+    return task;
+  }
+  const auto distance = [&](Id row, Id corner) {
+    return (mesh_.points[wall_.nodes[row]] - graph_.corners()[corner]).norm() / wall_.scale[row];
+  };
+  if (shape.startCorner != kNone) task.startRow = cornerRow_[shape.startCorner];
+  if (shape.endCorner != kNone) task.endRow = cornerRow_[shape.endCorner];
+  if (task.startRow != kNone) task.startDistance = distance(task.startRow, shape.startCorner);
+  if (task.endRow != kNone) task.endDistance = distance(task.endRow, shape.endCorner);
+  return task;
+}
+
+/// Arc lengths of a piece's nodes: their own, evened out, apart by a least spacing, between the ends.
+std::vector<double> PathFinder::spread(const std::vector<PathNode>& piece, double scale, bool firstFixed,
+                                       bool lastFixed) const {
+  const std::size_t n = piece.size();
+  std::vector<double> s(n), next;
+  for (std::size_t i = 0; i < n; ++i) s[i] = piece[i].arc;
+  const double room = s[n - 1] - s[0];
+  for (int sweep = 0; sweep < 2; ++sweep) {
+    next = s;
+    for (std::size_t i = 1; i + 1 < n; ++i) next[i] = 0.5 * s[i] + 0.25 * (s[i - 1] + s[i + 1]);
+    s = next;
+  }
+  const double gap =
+      std::min(options_.spacing * scale, 0.6 * std::max(0.0, room) / static_cast<double>(n - 1));
+  // Forward and backward sweeps both respect the ends; their mean keeps every gap.
+  std::vector<double> up = s, down = s;
+  for (std::size_t i = 1; i < n; ++i) up[i] = std::max(s[i], up[i - 1] + gap);
+  for (std::size_t i = n - 1; i-- > 0;) down[i] = std::min(s[i], down[i + 1] - gap);
+  for (std::size_t i = 0; i < n; ++i) s[i] = 0.5 * (up[i] + down[i]);
+  const double lo = piece[0].arc, hi = piece[n - 1].arc;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (firstFixed) s[i] = std::max(s[i], lo + static_cast<double>(i) * gap);
+    if (lastFixed) s[i] = std::min(s[i], hi - static_cast<double>(n - 1 - i) * gap);
+  }
+  return s;
+}
+
+void PathFinder::keepPiece(Id curve, const std::vector<PathNode>& piece, double shift, double scale) {
+  const auto isEnd = [&](std::size_t i) { return taken_[piece[i].row].node != kNone; };
+  const bool loop = piece.front().row == piece.back().row;
+  const bool firstFixed = loop || isEnd(0), lastFixed = loop || isEnd(piece.size() - 1);
+  const std::vector<double> arc = spread(piece, scale, firstFixed, lastFixed);
+  std::vector<Id> nodes;
+  for (std::size_t i = 0; i < piece.size(); ++i) {
+    const Id row = piece[i].row;
+    nodes.push_back(wall_.nodes[row]);
+    if (taken_[row].node == kNone)
+      taken_[row] = {wall_.nodes[row], curve, kNone, table_.at(curve, arc[i] + shift)};
+  }
+  result_.pieces.push(nodes);
+  result_.pieceCurve.push_back(curve);
+}
+
+void PathFinder::traceCurve(CurveTracer& tracer, Id curve) {
+  const FeatureCurve& shape = graph_.curves()[curve];
+  CurveState& state = result_.curves[curve];
+  if (near_.curves[curve].empty()) return;
+  const double scale = curveScale(curve), length = table_.length(curve);
+  CurveTracer::Task task = makeTask(curve, scale);
+  const bool loop = shape.closed || (task.startRow != kNone && task.startRow == task.endRow);
+  if (length < (loop ? options_.shortestLoop : options_.shortest) * scale) {
+    state = CurveState::Short;
+    return;
+  }
+  double traced = 0;
+  std::size_t pieces = 0;
+  for (const std::vector<PathNode>& piece : tracer.trace(task)) {
+    if (piece.size() < 2) continue;
+    keepPiece(curve, piece, task.arcShift, scale);
+    traced += piece.back().arc - piece.front().arc;
+    ++pieces;
+  }
+  if (pieces > 0) state = pieces == 1 && traced > length - scale ? CurveState::Traced : CurveState::Partial;
+}
+
+void PathFinder::collectTargets() {
+  for (const NodeTarget& t : taken_)
+    if (t.node != kNone) result_.targets.push_back(t);
+}
+
+FeaturePaths PathFinder::find() {
+  taken_.resize(wall_.nodes.size());
+  result_.curves.assign(graph_.curves().size(), CurveState::Unreached);
+  gather();
+  mergeCorners();
+  placeCorners();
+  std::vector<Id> order(graph_.curves().size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Id a, Id b) { return table_.length(a) > table_.length(b); });
+  CurveTracer tracer(mesh_, wall_, table_);
+  for (Id curve : order) traceCurve(tracer, curve);
+  collectTargets();
+  return std::move(result_);
+}
+
+}  // namespace
+
+FeaturePaths traceFeatures(const PolyMesh& mesh, const WallSurface& wall, const FeatureGraph& graph,
+                           const FeaturePathOptions& options, const std::vector<float>& penalty) {
+  return PathFinder(mesh, wall, graph, options, penalty).find();
+}
+
+}  // namespace pm

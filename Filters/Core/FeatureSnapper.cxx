@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FeatureSnapper.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pm {
+namespace {
+
+constexpr int kRings = 3;           // wall nodes this many edges from a target take part in the smoothing
+constexpr int kDistanceGroups = 4;  // eq 4-31
+constexpr double kReached = 1e-3;   // length scales
+constexpr double kSnapTolerance =
+    0.1;  // length scales a face may leave the geometry by when a node reaches a feature
+constexpr double kSmoothTolerance = 0.02;
+
+}  // namespace
+
+FeatureSnapper::FeatureSnapper(NodeMover& mover, const WallSurface& wall, const DistanceField& field,
+                               const FeatureGraph& graph)
+    : mover_(mover), mesh_(mover.mesh()), wall_(wall), field_(field), graph_(graph) {
+  height_.resize(wall.nodes.size());
+  isBase_.assign(mesh_.points.size(), 0);
+  for (Id row = 0; row < wall.size(); ++row) {
+    const Id p = wall.nodes[row], b = mesh_.base[p];
+    height_[row] = b == kNone ? 0.0 : (mesh_.points[p] - mesh_.points[b]).norm();
+    if (b != kNone) isBase_[b] = 1;
+  }
+}
+
+void FeatureSnapper::setTargets(const FeaturePaths& paths) {
+  const std::size_t n = wall_.nodes.size();
+  role_.assign(n, Role::Outside);
+  target_.assign(n, Vec3::Zero());
+  curve_.assign(n, kNone);
+  before_.assign(n, kNone);
+  after_.assign(n, kNone);
+  for (const NodeTarget& t : paths.targets) {
+    const Id row = wall_.rowOf[t.node];
+    role_[row] = t.corner == kNone ? Role::Curve : Role::Corner;
+    target_[row] = t.target;
+    curve_[row] = t.curve;
+  }
+  for (Id i = 0; i < paths.pieces.rows(); ++i) {
+    const Span<Id> piece = paths.pieces[i];
+    for (std::size_t k = 0; k + 1 < piece.size(); ++k) {
+      const Id a = wall_.rowOf[piece[k]], b = wall_.rowOf[piece[k + 1]];
+      after_[a] = b;
+      before_[b] = a;
+    }
+  }
+  findActive();
+}
+
+void FeatureSnapper::findActive() {
+  std::vector<Id> rows, ring;
+  for (Id row = 0; row < wall_.size(); ++row)
+    if (role_[row] != Role::Outside) rows.push_back(row);
+  ring = rows;
+  for (int r = 0; r < kRings; ++r) {
+    std::vector<Id> next;
+    for (Id row : ring)
+      for (Id n : wall_.neighbours[row])
+        if (role_[n] == Role::Outside) {
+          role_[n] = Role::Free;
+          next.push_back(n);
+        }
+    rows.insert(rows.end(), next.begin(), next.end());
+    ring.swap(next);
+  }
+  std::sort(rows.begin(), rows.end());
+  active_ = columnGroups(rows);
+  std::vector<Id> below;
+  for (Id row : rows) {
+    const Id b = mesh_.base[wall_.nodes[row]];
+    if (b == kNone) continue;
+    for (Id f : mover_.facesOf(b))
+      for (Id p : mesh_.faces[f])
+        if (wall_.rowOf[p] == kNone && !isBase_[p]) below.push_back(p);
+  }
+  std::sort(below.begin(), below.end());
+  below.erase(std::unique(below.begin(), below.end()), below.end());
+  inner_ = mover_.colour(below);
+}
+
+/// Groups of wall nodes whose columns may move in parallel.
+std::vector<std::vector<Id>> FeatureSnapper::columnGroups(const std::vector<Id>& rows) const {
+  std::vector<Id> points;
+  points.reserve(rows.size());
+  for (Id row : rows) points.push_back(wall_.nodes[row]);
+  return mover_.colour(points);
+}
+
+template <class Body>
+void FeatureSnapper::forEachRow(const std::vector<std::vector<Id>>& groups, const Body& body) {
+  mover_.forEach(groups, [&](Id point) { body(wall_.rowOf[point]); });
+}
+
+double FeatureSnapper::distance(Id row) const {
+  return (target_[row] - mesh_.points[wall_.nodes[row]]).norm() / wall_.scale[row];
+}
+
+bool FeatureSnapper::reached(Id row) const { return distance(row) <= kReached; }
+
+std::vector<Id> FeatureSnapper::missed() const {
+  std::vector<Id> rows;
+  for (Id row = 0; row < wall_.size(); ++row)
+    if ((role_[row] == Role::Curve || role_[row] == Role::Corner) && !reached(row)) rows.push_back(row);
+  return rows;
+}
+
+void FeatureSnapper::snap(bool corners) {
+  const Role role = corners ? Role::Corner : Role::Curve;
+  std::vector<Id> open;
+  double farthest = 0;
+  for (Id row = 0; row < wall_.size(); ++row)
+    if (role_[row] == role && !reached(row)) {
+      open.push_back(row);
+      farthest = std::max(farthest, distance(row));
+    }
+  std::vector<std::vector<Id>> groups(kDistanceGroups);
+  for (Id row : open) {
+    const int g = static_cast<int>(distance(row) / farthest * kDistanceGroups);
+    groups[std::min(g, kDistanceGroups - 1)].push_back(row);
+  }
+  for (const std::vector<Id>& group : groups) forEachRow(columnGroups(group), [&](Id row) { snapNode(row); });
+}
+
+void FeatureSnapper::snapNode(Id row) {
+  const Vec3 from = mesh_.points[wall_.nodes[row]];
+  if (tryMove(row, target_[row], kSnapTolerance)) return;
+  for (double part : {0.5, 0.25}) {
+    const Vec3 between = field_.closest(from + part * (target_[row] - from)).point;
+    if ((between - target_[row]).norm() < (from - target_[row]).norm() &&
+        tryMove(row, between, kSnapTolerance))
+      return;
+  }
+}
+
+/// Moves a wall node and, as far as it helps, the lower end of its prism edge.
+bool FeatureSnapper::tryMove(Id row, const Vec3& to, double tolerance) {
+  const Id p = wall_.nodes[row], b = mesh_.base[p];
+  const Vec3 from = mesh_.points[p];
+  if (deviation(row, to) > std::max(deviation(row, from), tolerance * wall_.scale[row])) return false;
+  if (b == kNone) return mover_.move(p, to);
+  const Vec3 low = mesh_.points[b];
+  for (double part : {0.5, 1.0})
+    if (mover_.moveTogether({p, b}, {to, low + part * (to - from)})) return true;
+  return mover_.move(p, to);
+}
+
+/// Largest distance to the geometry of the representative points that follow the node, were it there.
+double FeatureSnapper::deviation(Id row, const Vec3& at) const {
+  const Id p = wall_.nodes[row];
+  double worst = field_.closest(at).distance2;
+  for (Id n : wall_.neighbours[row])
+    worst = std::max(worst, field_.closest(0.5 * (at + mesh_.points[wall_.nodes[n]])).distance2);
+  for (Id f : wall_.faces[row]) {
+    Vec3 sum = at;
+    for (Id q : mesh_.faces[f])
+      if (q != p) sum += mesh_.points[q];
+    worst = std::max(worst, field_.closest(sum / static_cast<double>(mesh_.faces[f].size())).distance2);
+  }
+  return std::sqrt(worst);
+}
+
+Vec3 FeatureSnapper::wallNormal(Id row) const {
+  Vec3 sum = Vec3::Zero();
+  for (Id f : wall_.faces[row]) sum += mover_.faceNormal(f).normalized();
+  const double length = sum.norm();
+  return length > 0 ? Vec3(sum / length) : Vec3(Vec3::Zero());
+}
+
+Vec3 FeatureSnapper::neighbourMean(Id point) const {
+  Vec3 sum = Vec3::Zero();
+  double count = 0;
+  for (Id f : mover_.facesOf(point)) {
+    const Span<Id> row = mesh_.faces[f];
+    const std::size_t k = std::find(row.begin(), row.end(), point) - row.begin(), n = row.size();
+    sum += mesh_.points[row[(k + 1) % n]] + mesh_.points[row[(k + n - 1) % n]];
+    count += 2;
+  }
+  return sum / count;
+}
+
+/// Smoothing along the geometry (4.5.2): in the node's tangent plane, then back to the surface.
+void FeatureSnapper::smoothWallNode(Id row, bool onlyBetter) {
+  const Id p = wall_.nodes[row];
+  const Vec3 from = mesh_.points[p];
+  Vec3 mean = Vec3::Zero();
+  for (Id n : wall_.neighbours[row]) mean += mesh_.points[wall_.nodes[n]];
+  mean /= static_cast<double>(wall_.neighbours[row].size());
+  const Vec3 n = wallNormal(row);
+  Vec3 step = mean - from;
+  step -= n.dot(step) * n;
+  const Vec3 to = field_.closest(from + 0.5 * step).point;
+  if ((to - from).norm() < 0.01 * wall_.scale[row]) return;
+  if (onlyBetter) {
+    if (deviation(row, to) <= std::max(deviation(row, from), kSmoothTolerance * wall_.scale[row]))
+      mover_.improve(p, to);
+  } else {
+    tryMove(row, to, kSmoothTolerance);
+  }
+}
+
+/// A node that reached its curve may slide between its neighbours on the path when that helps the cells
+/// around it.
+void FeatureSnapper::slideOnCurve(Id row) {
+  if (before_[row] == kNone || after_[row] == kNone || !reached(row)) return;
+  const Id p = wall_.nodes[row];
+  const Vec3 &a = mesh_.points[wall_.nodes[before_[row]]], &b = mesh_.points[wall_.nodes[after_[row]]];
+  const ClosestOnFeature on = graph_.closestOnCurve(0.5 * mesh_.points[p] + 0.25 * (a + b), curve_[row]);
+  const double limit = kSmoothTolerance * wall_.scale[row];
+  if (on.segment == kNone || (on.point - mesh_.points[p]).norm() < 0.5 * limit) return;
+  if (deviation(row, on.point) > std::max(deviation(row, mesh_.points[p]), limit)) return;
+  if (mover_.improve(p, on.point)) target_[row] = mesh_.points[p];
+}
+
+/// Lower end of a prism edge: below its wall node along the wall's normal at the old height, evened out
+/// (4.5.3).
+void FeatureSnapper::settleBase(Id row, bool onlyBetter) {
+  const Id p = wall_.nodes[row], b = mesh_.base[p];
+  if (b == kNone) return;
+  const Vec3 upright = mesh_.points[p] - height_[row] * wallNormal(row);
+  const Vec3 ideal = 0.7 * upright + 0.3 * neighbourMean(b);
+  const Vec3 to = 0.5 * (mesh_.points[b] + ideal);
+  if ((to - mesh_.points[b]).norm() < 0.01 * height_[row]) return;
+  if (onlyBetter)
+    mover_.improve(b, to);
+  else
+    mover_.drift(b, to, 1);
+}
+
+void FeatureSnapper::relax() {
+  forEachRow(active_, [&](Id row) { settleBase(row, false); });
+  forEachRow(active_, [&](Id row) {
+    if (role_[row] == Role::Free) smoothWallNode(row, false);
+  });
+  mover_.forEach(inner_, [&](Id p) { mover_.improve(p, 0.5 * (mesh_.points[p] + neighbourMean(p))); });
+}
+
+void FeatureSnapper::polish() {
+  forEachRow(active_, [&](Id row) {
+    if (role_[row] == Role::Free)
+      smoothWallNode(row, true);
+    else if (role_[row] == Role::Curve)
+      slideOnCurve(row);
+  });
+  forEachRow(active_, [&](Id row) { settleBase(row, true); });
+  mover_.forEach(inner_, [&](Id p) { mover_.improve(p, 0.5 * (mesh_.points[p] + neighbourMean(p))); });
+}
+
+}  // namespace pm

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Moves wall nodes onto their feature targets and relaxes the mesh around them (thesis 4.5, 4.7.2; part of
+// ResolveFeatures). Every move goes through the NodeMover, so the mesh stays valid.
+//
+// A node that cannot reach its target alone takes the lower end of its prism edge along. A move is kept only
+// when no wall face leaves the geometry: the representative points (eq 4-20) that it moves may be as far away
+// as before, or a small part of the length scale.
+#pragma once
+
+#include "DistanceField.h"
+#include "FeaturePaths.h"
+#include "NodeMover.h"
+
+namespace pm {
+
+class FeatureSnapper {
+ public:
+  FeatureSnapper(NodeMover& mover, const WallSurface& wall, const DistanceField& field,
+                 const FeatureGraph& graph);
+
+  /// Takes over targets, and works from now on around them (three rings of wall nodes).
+  void setTargets(const FeaturePaths& paths);
+  /// Moves the nodes of curves, or those of corners, towards their targets, nearest first (eq 4-31).
+  void snap(bool corners);
+  /// Smooths free wall nodes along the geometry, then the lower ends of their prism edges, then the points
+  /// below.
+  void relax();
+  /// As relax, but a move must also improve the worst measure around the point; nodes on curves slide along
+  /// them.
+  void polish();
+  /// Wall rows whose targets are not reached.
+  std::vector<Id> missed() const;
+
+ private:
+  enum class Role : std::uint8_t { Outside, Free, Curve, Corner };
+  bool reached(Id row) const;
+  double distance(Id row) const;
+  void snapNode(Id row);
+  bool tryMove(Id row, const Vec3& to, double tolerance);
+  double deviation(Id row, const Vec3& at) const;
+  Vec3 wallNormal(Id row) const;
+  Vec3 neighbourMean(Id point) const;
+  void smoothWallNode(Id row, bool onlyBetter);
+  void slideOnCurve(Id row);
+  void settleBase(Id row, bool onlyBetter);
+  void findActive();
+  std::vector<std::vector<Id>> columnGroups(const std::vector<Id>& rows) const;
+  template <class Body>
+  void forEachRow(const std::vector<std::vector<Id>>& groups, const Body& body);
+
+  NodeMover& mover_;
+  const PolyMesh& mesh_;
+  const WallSurface& wall_;
+  const DistanceField& field_;
+  const FeatureGraph& graph_;
+  std::vector<double> height_;           // #W length of the prism edge at the start
+  std::vector<char> isBase_;             // #P lower end of a prism edge
+  std::vector<Role> role_;               // #W
+  std::vector<Vec3> target_;             // #W
+  std::vector<Id> curve_;                // #W
+  std::vector<Id> before_, after_;       // #W neighbours on the path, kNone at its ends
+  std::vector<std::vector<Id>> active_;  // groups of wall nodes around targets
+  std::vector<std::vector<Id>> inner_;   // groups of points below them
+};
+
+}  // namespace pm

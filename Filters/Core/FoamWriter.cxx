@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FoamWriter.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <numeric>
+#include <unordered_set>
+
+namespace pm {
+namespace {
+
+namespace fs = std::filesystem;
+using Buffer = fmt::memory_buffer;
+
+[[noreturn]] void failed(const std::string& path, int code) {
+  throw InputError("Cannot write " + path + ": " + std::strerror(code) +
+                   ". Choose another folder or free some space on the disk.");
+}
+
+/// One file of the folder, written beside its final place; publish() puts it there, the destructor drops it.
+class FoamFile {
+ public:
+  FoamFile(const fs::path& directory, const std::string& object)
+      : object_(object), path_((directory / object).string()), part_(path_ + ".part") {
+    file_ = std::fopen(part_.c_str(), "wb");
+    if (!file_) failed(path_, errno);
+  }
+  FoamFile(const FoamFile&) = delete;
+  FoamFile& operator=(const FoamFile&) = delete;
+  ~FoamFile() {
+    if (file_) std::fclose(file_);
+    std::error_code ignored;
+    if (!published_) fs::remove(part_, ignored);
+  }
+
+  void header(const char* foamClass, bool binary, const std::string& note = {}) {
+    text(fmt::format("FoamFile\n{{\n    version     2.0;\n    format      {};\n    class       {};\n",
+                     binary ? "binary" : "ascii", foamClass));
+    if (!note.empty()) text(fmt::format("    note        \"{}\";\n", note));
+    text("    arch        \"LSB;label=32;scalar=64\";\n    location    \"constant/polyMesh\";\n");
+    text(fmt::format("    object      {};\n}}\n\n", object_));
+  }
+  void text(const std::string& s) { bytes(s.data(), s.size()); }
+  void bytes(const void* data, std::size_t count) {
+    if (count > 0 && std::fwrite(data, 1, count, file_) != count) failed(path_, errno);
+  }
+  template <class T>
+  void binaryList(const std::vector<T>& values) {
+    text(fmt::format("{}\n(", values.size()));
+    bytes(values.data(), values.size() * sizeof(T));
+    text(")\n");
+  }
+  void close() {
+    std::FILE* file = file_;
+    file_ = nullptr;
+    if (std::fclose(file) != 0) failed(path_, errno);
+  }
+  void publish() {
+    std::error_code code;
+    fs::rename(part_, path_, code);
+    if (code) failed(path_, code.value());
+    published_ = true;
+  }
+
+ private:
+  std::string object_, path_, part_;
+  std::FILE* file_ = nullptr;
+  bool published_ = false;
+};
+
+/// Writes "count ( ... )" where format(i, buffer) appends line i; lines are formatted in parallel, written in
+/// order.
+template <class Format>
+void asciiList(FoamFile& file, Id count, Monitor& monitor, double fraction, const Format& format) {
+  constexpr Id kBlock = 16384, kBatch = 16;
+  file.text(fmt::format("{}\n(\n", count));
+  std::vector<Buffer> buffers(kBatch);
+  for (Id start = 0; start < count; start += kBlock * kBatch) {
+    monitor.check(fraction, "writing the polyMesh folder");
+    const Id end = count - start < kBlock * kBatch ? count : start + kBlock * kBatch;
+    const Id blocks = (end - start + kBlock - 1) / kBlock;
+    tbb::parallel_for(Id(0), blocks, [&](Id b) {
+      const Id first = start + b * kBlock, last = std::min(end, first + kBlock);
+      buffers[b].clear();
+      for (Id i = first; i < last; ++i) format(i, buffers[b]);
+    });
+    for (Id b = 0; b < blocks; ++b) file.bytes(buffers[b].data(), buffers[b].size());
+  }
+  file.text(")\n");
+}
+
+void append(Buffer& out, Id value) {
+  const fmt::format_int text(value);
+  out.append(text.data(), text.data() + text.size());
+}
+
+void labelList(FoamFile& file, const std::vector<Id>& values, bool binary, Monitor& monitor,
+               double fraction) {
+  if (binary) return file.binaryList(values);
+  asciiList(file, static_cast<Id>(values.size()), monitor, fraction, [&](Id i, Buffer& out) {
+    append(out, values[i]);
+    out.push_back('\n');
+  });
+}
+
+/// Faces in OpenFOAM's order: the internal ones, then each patch's.
+struct FaceOrder {
+  std::vector<Id> faces;
+  std::vector<Id> patchStart;  // of each patch, and the end
+};
+
+FaceOrder orderByPatch(const PolyMesh& mesh) {
+  FaceOrder order;
+  const Id internal = mesh.internalFaces();
+  order.patchStart.assign(mesh.patchNames.size() + 1, 0);
+  order.patchStart[0] = internal;
+  for (Id patch : mesh.patch) ++order.patchStart[patch + 1];
+  std::partial_sum(order.patchStart.begin(), order.patchStart.end(), order.patchStart.begin());
+  order.faces.resize(mesh.faceCount());
+  std::iota(order.faces.begin(), order.faces.begin() + internal, 0);
+  std::vector<Id> next(order.patchStart.begin(), order.patchStart.end() - 1);
+  for (Id i = 0; i < mesh.boundaryFaces(); ++i) order.faces[next[mesh.patch[i]]++] = internal + i;
+  return order;
+}
+
+void writePoints(const PolyMesh& mesh, FoamFile& file, bool binary, Monitor& monitor) {
+  static_assert(sizeof(Vec3) == 3 * sizeof(double), "points are written as they lie in memory");
+  file.header("vectorField", binary);
+  if (binary) return file.binaryList(mesh.points);
+  asciiList(file, static_cast<Id>(mesh.points.size()), monitor, 0.1, [&](Id i, Buffer& out) {
+    const Vec3& p = mesh.points[i];
+    fmt::format_to(std::back_inserter(out), "({} {} {})\n", p.x(), p.y(), p.z());
+  });
+}
+
+void writeFaces(const PolyMesh& mesh, const FaceOrder& order, FoamFile& file, bool binary, Monitor& monitor) {
+  file.header(binary ? "faceCompactList" : "faceList", binary);
+  if (!binary) {
+    asciiList(file, mesh.faceCount(), monitor, 0.5, [&](Id i, Buffer& out) {
+      const Span<Id> row = mesh.faces[order.faces[i]];
+      append(out, static_cast<Id>(row.size()));
+      char separator = '(';
+      for (Id p : row) {
+        out.push_back(separator);
+        append(out, p);
+        separator = ' ';
+      }
+      out.append(fmt::string_view(")\n"));
+    });
+    return;
+  }
+  Csr<Id> rows;
+  rows.offsets.reserve(mesh.faces.offsets.size());
+  rows.values.reserve(mesh.faces.values.size());
+  for (Id f : order.faces) rows.push(mesh.faces[f]);
+  file.binaryList(rows.offsets);
+  file.text("\n");
+  file.binaryList(rows.values);
+}
+
+void writeBoundary(const PolyMesh& mesh, const FaceOrder& order, FoamFile& file) {
+  const std::vector<std::string> names = foamPatchNames(mesh.patchNames);
+  std::string entries;
+  int count = 0;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const Id start = order.patchStart[i], faces = order.patchStart[i + 1] - start;
+    if (faces == 0) continue;
+    ++count;
+    entries += fmt::format(
+        "    {}\n    {{\n        type            {};\n        nFaces          {};\n"
+        "        startFace       {};\n    }}\n",
+        names[i], mesh.isWallPatch(static_cast<Id>(i)) ? "wall" : "patch", faces, start);
+  }
+  file.header("polyBoundaryMesh", false);
+  file.text(fmt::format("{}\n(\n{})\n", count, entries));
+}
+
+/// What OpenFOAM would read beside the new files although it belongs to a former mesh.
+void removeStale(const fs::path& directory) {
+  std::error_code ignored;
+  for (const char* name : {"points", "faces", "owner", "neighbour", "boundary"}) {
+    fs::remove(directory / (std::string(name) + ".gz"), ignored);
+  }
+  for (const char* name :
+       {"cellZones", "faceZones", "pointZones", "meshModifiers", "parallelData", "cells"}) {
+    fs::remove(directory / name, ignored);
+    fs::remove(directory / (std::string(name) + ".gz"), ignored);
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> foamPatchNames(const std::vector<std::string>& names) {
+  const auto isLetter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+  const auto isOther = [](char c) { return (c >= '0' && c <= '9') || c == '-' || c == '.'; };
+  std::vector<std::string> words;
+  for (const std::string& name : names) {
+    std::string word;
+    for (char c : name) word += isLetter(c) || isOther(c) ? c : '_';
+    words.push_back(word.empty() || !isLetter(word[0]) ? "patch_" + word : word);
+  }
+  // Names that were legal keep themselves; what became equal to another gets a number.
+  std::unordered_set<std::string> given;
+  std::vector<bool> done(words.size(), false);
+  for (std::size_t i = 0; i < words.size(); ++i)
+    done[i] = words[i] == names[i] && given.insert(words[i]).second;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (done[i]) continue;
+    const std::string word = words[i];
+    for (int number = 2; !given.insert(words[i]).second; ++number)
+      words[i] = fmt::format("{}_{}", word, number);
+  }
+  return words;
+}
+
+void writePolyMesh(const PolyMesh& mesh, const std::string& directory, bool binary, Monitor& monitor) {
+  const fs::path folder(directory);
+  std::error_code code;
+  fs::create_directories(folder, code);
+  if (code) failed(directory, code.value());
+
+  const FaceOrder order = orderByPatch(mesh);
+  std::vector<std::unique_ptr<FoamFile>> files;
+  const auto open = [&](const char* name) -> FoamFile& {
+    monitor.check(0.2 * static_cast<double>(files.size()), "writing the polyMesh folder");
+    files.push_back(std::make_unique<FoamFile>(folder, name));
+    return *files.back();
+  };
+  const std::string note =
+      fmt::format("nPoints:{}  nCells:{}  nFaces:{}  nInternalFaces:{}", mesh.points.size(), mesh.cellCount,
+                  mesh.faceCount(), mesh.internalFaces());
+  writePoints(mesh, open("points"), binary, monitor);
+  writeFaces(mesh, order, open("faces"), binary, monitor);
+  std::vector<Id> owner(mesh.owner.size());
+  for (std::size_t i = 0; i < owner.size(); ++i) owner[i] = mesh.owner[order.faces[i]];
+  FoamFile& ownerFile = open("owner");
+  ownerFile.header("labelList", binary, note);
+  labelList(ownerFile, owner, binary, monitor, 0.7);
+  FoamFile& neighbourFile = open("neighbour");
+  neighbourFile.header("labelList", binary, note);
+  labelList(neighbourFile, mesh.neighbour, binary, monitor, 0.9);
+  writeBoundary(mesh, order, open("boundary"));
+  for (const auto& file : files) file->close();
+  monitor.check(1, "writing the polyMesh folder");
+  for (const auto& file : files) file->publish();
+  removeStale(folder);
+}
+
+}  // namespace pm

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "LayerColumns.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace pm {
+namespace {
+
+constexpr Id kAmbiguous = -2;  // a lower point joined to several wall points: its edges stay whole
+
+/// Calls body(p, q) for each pair of consecutive points of a face.
+template <class Body>
+void forEachPair(Span<Id> row, const Body& body) {
+  Id p = row[row.size() - 1];
+  for (Id q : row) {
+    body(p, q);
+    p = q;
+  }
+}
+
+/// Rows of the inverse relation: row v lists the rows of `of` that hold v, ascending.
+Csr<Id> invert(const Csr<Id>& of, std::size_t count) {
+  Csr<Id> rows;
+  rows.offsets.assign(count + 1, 0);
+  for (Id v : of.values) ++rows.offsets[v + 1];
+  std::partial_sum(rows.offsets.begin(), rows.offsets.end(), rows.offsets.begin());
+  rows.values.resize(rows.offsets.back());
+  std::vector<Id> next(rows.offsets.begin(), rows.offsets.end() - 1);
+  for (Id i = 0; i < of.rows(); ++i) {
+    for (Id v : of[i]) rows.values[next[v]++] = i;
+  }
+  return rows;
+}
+
+}  // namespace
+
+LayerColumns::LayerColumns(const PolyMesh& mesh) : mesh_(mesh), facesOfCell_(cellFaces(mesh)) {
+  findEdges();
+  findSides();
+  findColumns();
+  edgeColumns_ = invert(edges_, mesh.points.size());
+  layers_.assign(cells_.size(), 1);
+  edgeLayers_.assign(mesh.points.size(), 1);
+  firstPoint_.assign(mesh.points.size(), kNone);
+}
+
+void LayerColumns::findEdges() {
+  top_.assign(mesh_.points.size(), kNone);
+  const auto isWall = [&](Id p) { return mesh_.base[p] != kNone; };
+  for (Id f = 0; f < mesh_.faceCount(); ++f) {
+    forEachPair(mesh_.faces[f], [&](Id p, Id q) {
+      if (isWall(p) == isWall(q)) return;
+      const Id wall = isWall(p) ? p : q, lower = isWall(p) ? q : p;
+      if (top_[lower] == kNone) {
+        top_[lower] = wall;
+      } else if (top_[lower] != wall) {
+        top_[lower] = kAmbiguous;
+      }
+    });
+  }
+}
+
+void LayerColumns::findSides() {
+  sideStart_.assign(mesh_.faceCount(), kNotSide);
+  for (Id f = 0; f < mesh_.faceCount(); ++f) {
+    const Span<Id> row = mesh_.faces[f];
+    const std::size_t n = row.size();
+    if (n > 4) continue;
+    for (std::size_t i = 0; i < n; ++i) {
+      const Id b0 = row[i], b1 = row[(i + 1) % n];
+      if (top_[b0] < 0 || top_[b1] < 0) continue;
+      if (row[(i + 2) % n] == top_[b1] && row[n == 4 ? (i + 3) % n : (i + 2) % n] == top_[b0]) {
+        sideStart_[f] = static_cast<std::int8_t>(i);
+        break;
+      }
+    }
+  }
+}
+
+/// Lower points around a prism in the wall face's order; false when the cell is no prism.
+bool LayerColumns::findRing(Id cell, Id& wallFace, std::vector<Id>& ring) const {
+  std::vector<std::pair<Id, Id>> steps;
+  wallFace = kNone;
+  ring.clear();
+  if (mesh_.layer[cell] != 1) return false;
+  const Id internal = mesh_.internalFaces();
+  for (Id f : facesOfCell_[cell]) {
+    const Span<Id> row = mesh_.faces[f];
+    if (isSide(f)) {
+      const Id b0 = row[sideStart_[f]], b1 = row[(sideStart_[f] + 1) % row.size()];
+      steps.push_back(mesh_.owner[f] == cell ? std::make_pair(b0, b1) : std::make_pair(b1, b0));
+    } else if (f >= internal && mesh_.isWallPatch(mesh_.patch[f - internal])) {
+      if (wallFace != kNone) return false;
+      wallFace = f;
+    } else if (std::any_of(row.begin(), row.end(), [&](Id p) { return mesh_.base[p] != kNone; })) {
+      return false;
+    }
+  }
+  if (wallFace == kNone || steps.size() < 3) return false;
+  const Id start = std::min_element(steps.begin(), steps.end())->first;
+  Id at = start;
+  do {
+    const auto step = std::find_if(steps.begin(), steps.end(), [&](const auto& s) { return s.first == at; });
+    if (step == steps.end() || ring.size() == steps.size()) return false;
+    ring.push_back(at);
+    at = step->second;
+  } while (at != start);
+  return ring.size() == steps.size();
+}
+
+void LayerColumns::findColumns() {
+  columnOf_.assign(mesh_.cellCount, kNone);
+  std::vector<Id> lower, ring;
+  for (Id c = 0; c < mesh_.cellCount; ++c) {
+    lower.clear();
+    bool whole = true;
+    for (Id f : facesOfCell_[c]) {
+      forEachPair(mesh_.faces[f], [&](Id p, Id q) {
+        if ((mesh_.base[p] == kNone) == (mesh_.base[q] == kNone)) return;
+        const Id b = mesh_.base[p] == kNone ? p : q;
+        if (top_[b] == kAmbiguous) whole = false;
+        lower.push_back(b);
+      });
+    }
+    if (lower.empty()) continue;
+    std::sort(lower.begin(), lower.end());
+    lower.erase(std::unique(lower.begin(), lower.end()), lower.end());
+    columnOf_[c] = count();
+    cells_.push_back(c);
+    edges_.push(lower);
+    Id wallFace = kNone;
+    if (!whole || !findRing(c, wallFace, ring)) {
+      wallFace = kNone;
+      ring.clear();
+    }
+    wallFace_.push_back(wallFace);
+    rings_.push(ring);
+  }
+}
+
+void LayerColumns::around(Id column, std::vector<Id>& out) const {
+  out.assign(1, column);
+  for (Id b : edges_[column]) {
+    const Span<Id> columns = edgeColumns_[b];
+    out.insert(out.end(), columns.begin(), columns.end());
+  }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+}
+
+void LayerColumns::updateEdges(const std::vector<Id>& changedColumns) {
+  for (Id column : changedColumns) {
+    for (Id b : rings_[column]) {
+      edgeLayers_[b] = 1;
+      for (Id other : edgeColumns_[b]) edgeLayers_[b] = std::max(edgeLayers_[b], layers_[other]);
+    }
+  }
+}
+
+Id LayerColumns::numberPoints(Id firstId) {
+  for (std::size_t b = 0; b < top_.size(); ++b) {
+    if (edgeLayers_[b] == 1) continue;
+    firstPoint_[b] = firstId;
+    firstId += edgeLayers_[b] - 1;
+  }
+  return firstId;
+}
+
+Id LayerColumns::pointAt(Id lower, Id level) const {
+  if (level == 0) return top_[lower];
+  return level < edgeLayers_[lower] ? firstPoint_[lower] + level - 1 : lower;
+}
+
+Id LayerColumns::pieces(Id face) const {
+  if (!isSide(face)) return 1;
+  const Id own = layersOfCell(mesh_.owner[face]);
+  return face < mesh_.internalFaces() ? std::max(own, layersOfCell(mesh_.neighbour[face])) : own;
+}
+
+void LayerColumns::pieceRow(Id face, Id piece, std::vector<Id>& row) const {
+  row.clear();
+  const Span<Id> old = mesh_.faces[face];
+  const Id count = pieces(face);
+  if (count == 1) {
+    forEachPair(old, [&](Id p, Id q) {
+      if (top_[q] == p) {
+        for (Id level = 1; level < edgeLayers_[q]; ++level) row.push_back(pointAt(q, level));
+      } else if (top_[p] == q) {
+        for (Id level = edgeLayers_[p] - 1; level > 0; --level) row.push_back(pointAt(p, level));
+      }
+      row.push_back(q);
+    });
+    return;
+  }
+  const Id b0 = old[sideStart_[face]], b1 = old[(sideStart_[face] + 1) % old.size()];
+  // The last piece reaches down to the lower points and holds whatever lies on the edges on the way.
+  const auto lowest = [&](Id b) { return piece < count ? piece : edgeLayers_[b]; };
+  for (Id level = lowest(b1); level >= piece - 1; --level) row.push_back(pointAt(b1, level));
+  const bool joined = piece == 1 && top_[b0] == top_[b1];
+  for (Id level = joined ? 1 : piece - 1; level <= lowest(b0); ++level) row.push_back(pointAt(b0, level));
+}
+
+Id LayerColumns::layerAt(Id cell, Id face, Id piece) const {
+  const Id layers = layersOfCell(cell);
+  if (layers == 1 || face == wallFace_[columnOf_[cell]]) return 1;
+  return isSide(face) ? std::min(piece, layers) : layers;
+}
+
+void LayerColumns::capRow(Id column, Id level, std::vector<Id>& row) const {
+  row.clear();
+  for (Id b : rings_[column]) row.push_back(pointAt(b, level));
+}
+
+}  // namespace pm

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Node drifting (thesis 4.4.1): a point moves only if every cell and face it touches keeps the limits.
+//
+// The mover caches face and cell measures of the whole mesh and keeps them current move by move; an undone move
+// restores points and caches to the bit. What a move touches: the cells around the point and all their faces. Where a
+// face or cell is outside a limit already, a move may not make it worse.
+#pragma once
+
+#include <tbb/parallel_for.h>
+
+#include <vector>
+
+#include "MeshQuality.h"
+
+namespace pm {
+
+class NodeMover {
+ public:
+  /// Points move in place. The topology must not change while the mover lives.
+  NodeMover(PolyMesh& mesh, const QualityLimits& limits);
+
+  /// Moves p to target (its fixed coordinates stay); true when kept.
+  bool move(Id p, const Vec3& target) { return attempt(&p, &target, 1, false); }
+  /// As move, but a refused target is pulled back half way, up to `halvings` times. Returns the kept fraction of the
+  /// way, 0 when the point stayed.
+  double drift(Id p, const Vec3& target, int halvings = 3);
+  /// Kept only if valid and the worst local measure, relative to its limit, gets better (4.5, second strategy).
+  bool improve(Id p, const Vec3& target) { return attempt(&p, &target, 1, true); }
+  /// Moves several points at once, all or none.
+  bool moveTogether(const std::vector<Id>& points, const std::vector<Vec3>& targets) {
+    return attempt(points.data(), targets.data(), points.size(), false);
+  }
+  bool improveTogether(const std::vector<Id>& points, const std::vector<Vec3>& targets) {
+    return attempt(points.data(), targets.data(), points.size(), true);
+  }
+  /// Worst measure around a point relative to its limit: below 1 is valid, above 1 is not.
+  double badness(Id p) const;
+
+  /// Groups of points whose moves (a wall point's together with its base) touch nothing in common: within a group
+  /// they may run in parallel, with the same result for any number of threads. Greedy, in the order given.
+  std::vector<std::vector<Id>> colour(const std::vector<Id>& points) const;
+  /// Calls body(point) for every point, group by group, the points of a group in parallel.
+  template <class Body>
+  static void forEach(const std::vector<std::vector<Id>>& groups, const Body& body) {
+    for (const auto& group : groups)
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, group.size(), 16), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) body(group[i]);
+      });
+  }
+
+  const PolyMesh& mesh() const { return mesh_; }
+  const Vec3& point(Id p) const { return mesh_.points[p]; }
+  Span<Id> cellsOf(Id p) const { return pointCells_[p]; }
+  Span<Id> facesOf(Id p) const { return pointFaces_[p]; }
+  const Vec3& faceCentre(Id f) const { return faces_[f].shape.centre; }
+  const Vec3& faceNormal(Id f) const { return faces_[f].shape.normal; }  ///< length = area, leaves the owner
+  const Vec3& cellCentre(Id c) const { return cells_[c].centre; }
+
+ private:
+  struct FaceState {
+    FaceMeasures shape;
+    double cosAngle = 1, skew = 0;
+  };
+  struct Touched;  // scratch of one attempt
+
+  bool attempt(const Id* points, const Vec3* targets, std::size_t count, bool mustImprove);
+  void gather(const Id* points, std::size_t count, Touched& t) const;
+  void relate(Id f);
+  bool faceShapeHolds(Id f, const FaceState& old) const;
+  bool faceAngleHolds(Id f, const FaceState& old) const;
+  bool cellHolds(const CellMeasures& now, const CellMeasures& old) const;
+  double badnessOfFace(const FaceState& s, bool internal) const;
+  double badnessOfCell(const CellMeasures& c) const;
+  CellMeasures cellNow(Id c) const;
+
+  PolyMesh& mesh_;
+  QualityLimits limits_;
+  double cosInternal_, cosBoundary_, minVolume_, minTet_;
+  std::vector<FaceState> faces_;
+  std::vector<CellMeasures> cells_;
+  Csr<Id> pointCells_, pointFaces_, cellFaces_, cellPoints_;
+};
+
+}  // namespace pm

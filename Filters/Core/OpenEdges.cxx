@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Open edges as features: which ones count, and borders that belong together made one line; see
+// FeatureNetwork.h.
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "Bvh.h"
+#include "ClosestPoint.h"
+#include "FeatureNetwork.h"
+
+namespace pm {
+
+namespace {
+
+constexpr double kDegrees = 180 / 3.14159265358979323846;
+// A triangle that shares a point with the edge is near it there in any case; beside the edge it counts only
+// within this part of the distance to the shared point.
+constexpr double kSharedPointSlope = 0.1;
+
+bool planesDiffer(const SurfaceModel& model, Id s, Id t, double degrees) {
+  const Vec3& m = model.normal(s);
+  const Vec3& n = model.normal(t);
+  const double angle = 2 * std::atan2((m - n).norm(), (m + n).norm()) * kDegrees;
+  return std::min(angle, 180 - angle) > degrees;
+}
+
+/// Does geometry that the edge's triangle ought to be stitched to at an angle, or of another patch, lie
+/// beside it?
+bool isNearOther(const SurfaceModel& model, const OpenEdge& edge, const FeatureOptions& options) {
+  const Vec3& a = model.points()[edge.a];
+  const Vec3& b = model.points()[edge.b];
+  const Vec3 reach = Vec3::Constant(options.gapTolerance);
+  for (const double place : {1.0 / 6, 0.5, 5.0 / 6}) {
+    const Vec3 p = a + place * (b - a);
+    Box box;
+    box.add(p - reach);
+    box.add(p + reach);
+    for (Id t : model.trianglesNear(box)) {
+      if (t == edge.triangle) continue;
+      const bool otherPatch = options.interfaces && model.patchOf(t) != model.patchOf(edge.triangle);
+      if (!otherPatch && !planesDiffer(model, t, edge.triangle, options.sharpAngle)) continue;
+      double limit = options.gapTolerance;
+      for (Id corner : model.triangles()[t])
+        if (corner == edge.a || corner == edge.b)
+          limit = std::min(limit, kSharedPointSlope * (model.points()[corner] - p).norm());
+      if (model.closestOnTriangle(p, t).distance2 <= limit * limit) return true;
+    }
+  }
+  return false;
+}
+
+Box boxOf(const Vec3& p) {
+  Box box;
+  box.add(p);
+  return box;
+}
+
+struct Foot {
+  Vec3 point = Vec3::Zero();
+  double distance2 = std::numeric_limits<double>::infinity();
+  Id link = kNone;
+};
+
+class Welder {
+ public:
+  Welder(FeatureNetwork& network, double tolerance)
+      : network_(network), tolerance2_(tolerance * tolerance), firm_(network.points.size(), false) {
+    for (const auto& link : network.links) firm_[link.a] = firm_[link.b] = true;
+  }
+
+  void run(const std::vector<OpenEdge>& open) {
+    std::vector<FeatureNetwork::Link> loose;
+    for (const OpenEdge& e : open) loose.push_back({e.a, e.b, kOpenEdge});
+    if (tolerance2_ > 0) {
+      joinPoints(loose);
+      std::vector<FeatureNetwork::Link> firm = splitFirm(loose);
+      loose = split(loose);
+      network_.links = std::move(firm);
+    }
+    network_.links.insert(network_.links.end(), loose.begin(), loose.end());
+    unify();
+  }
+
+ private:
+  using Links = std::vector<FeatureNetwork::Link>;
+
+  static std::vector<Id> pointsOf(const Links& links) {
+    std::vector<Id> ids;
+    for (const auto& link : links) ids.insert(ids.end(), {link.a, link.b});
+    std::sort(ids.begin(), ids.end());
+    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+    return ids;
+  }
+
+  Bvh bvhOver(const std::vector<Id>& points) const {
+    std::vector<Box> boxes;
+    for (Id p : points) boxes.push_back(boxOf(at(p)));
+    return Bvh(boxes);
+  }
+
+  const Vec3& at(Id p) const { return network_.points[p]; }
+
+  /// Loose points follow the first point within the tolerance that stays: those of links already there, then
+  /// by id.
+  void joinPoints(Links& loose) {
+    const std::vector<Id> points = pointsOf(loose);
+    const Bvh bvh = bvhOver(points);
+    std::vector<Id> target(points.size(), kNone);
+    const auto gather = [&](Id p) {
+      bvh.nearest(
+          at(p), [&] { return tolerance2_; },
+          [&](Id slot) {
+            const Id q = bvh.order()[slot];
+            if (target[q] == kNone && !firm_[points[q]] &&
+                (at(points[q]) - at(p)).squaredNorm() <= tolerance2_)
+              target[q] = p;
+          });
+    };
+    for (Id p : pointsOf(network_.links)) gather(p);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (target[i] != kNone) continue;
+      target[i] = points[i];
+      if (!firm_[points[i]]) gather(points[i]);
+    }
+    const auto resolve = [&](Id p) {
+      return target[std::lower_bound(points.begin(), points.end(), p) - points.begin()];
+    };
+    for (auto& link : loose) {
+      const auto [lo, hi] = std::minmax({resolve(link.a), resolve(link.b)});
+      link.a = lo;
+      link.b = hi;
+    }
+    loose.erase(std::remove_if(loose.begin(), loose.end(), [](const auto& l) { return l.a == l.b; }),
+                loose.end());
+  }
+
+  /// Loose points beside a firm link move onto it and split it. Returns the firm links after that.
+  Links splitFirm(const Links& loose) {
+    const Links& links = network_.links;
+    std::vector<Box> boxes(links.size());
+    for (std::size_t i = 0; i < links.size(); ++i) {
+      boxes[i].add(at(links[i].a));
+      boxes[i].add(at(links[i].b));
+    }
+    const Bvh bvh(boxes);
+    std::vector<std::pair<Id, Id>> splits;  // (link, point)
+    for (Id p : pointsOf(loose)) {
+      if (firm_[p]) continue;
+      Foot best;
+      bvh.nearest(
+          at(p), [&] { return std::min(tolerance2_, best.distance2); },
+          [&](Id slot) {
+            Foot found;
+            found.link = bvh.order()[slot];
+            closestOnEdge(at(p), at(links[found.link].a), at(links[found.link].b), found);
+            if (found.distance2 < best.distance2 ||
+                (found.distance2 == best.distance2 && found.link < best.link))
+              best = found;
+          });
+      if (best.link == kNone || best.distance2 > tolerance2_) continue;
+      network_.points[p] = best.point;
+      splits.push_back({best.link, p});
+    }
+    std::sort(splits.begin(), splits.end());
+    Links out;
+    auto next = splits.begin();
+    for (Id i = 0; i < static_cast<Id>(links.size()); ++i) {
+      std::vector<Id> on;
+      for (; next != splits.end() && next->first == i; ++next) on.push_back(next->second);
+      appendPieces(links[i], on, out);
+    }
+    return out;
+  }
+
+  /// Every link split at the points within the tolerance of it.
+  Links split(const Links& loose) const {
+    Links all = loose;
+    all.insert(all.end(), network_.links.begin(), network_.links.end());
+    const std::vector<Id> points = pointsOf(all);
+    const Bvh bvh = bvhOver(points);
+    const Vec3 reach = Vec3::Constant(std::sqrt(tolerance2_));
+    std::vector<std::vector<Id>> on(loose.size());
+    tbb::parallel_for(std::size_t(0), loose.size(), [&](std::size_t i) {
+      const auto& link = loose[i];
+      Box box = boxOf(at(link.a));
+      box.add(at(link.b));
+      box.lo -= reach;
+      box.hi += reach;
+      bvh.overlapping(box, [&](Id slot) {
+        const Id p = points[bvh.order()[slot]];
+        Foot foot;
+        closestOnEdge(at(p), at(link.a), at(link.b), foot);
+        if (p != link.a && p != link.b && foot.distance2 <= tolerance2_) on[i].push_back(p);
+      });
+    });
+    Links out;
+    for (std::size_t i = 0; i < loose.size(); ++i) appendPieces(loose[i], on[i], out);
+    return out;
+  }
+
+  /// Pieces of a link between the given points beside it, in the order of their place along it.
+  void appendPieces(const FeatureNetwork::Link& link, const std::vector<Id>& on, Links& out) const {
+    const Vec3& a = at(link.a);
+    const Vec3 d = at(link.b) - a;
+    std::vector<std::pair<double, Id>> places;
+    for (Id p : on) places.push_back({(at(p) - a).dot(d), p});
+    std::sort(places.begin(), places.end());
+    Id last = link.a;
+    places.push_back({0, link.b});
+    for (const auto& [place, p] : places) {
+      const auto [lo, hi] = std::minmax(last, p);
+      if (lo != hi) out.push_back({lo, hi, link.kind});
+      last = p;
+    }
+  }
+
+  /// Each pair of points once, with the kinds of all its links.
+  void unify() {
+    Links& links = network_.links;
+    std::sort(links.begin(), links.end(), [](const auto& x, const auto& y) {
+      return x.a != y.a ? x.a < y.a : x.b != y.b ? x.b < y.b : x.kind < y.kind;
+    });
+    std::size_t kept = 0;
+    for (const auto& link : links) {
+      if (kept > 0 && links[kept - 1].a == link.a && links[kept - 1].b == link.b)
+        links[kept - 1].kind |= link.kind;
+      else
+        links[kept++] = link;
+    }
+    links.resize(kept);
+  }
+
+  FeatureNetwork& network_;
+  const double tolerance2_;
+  std::vector<bool> firm_;  // points of links that were there before: they stay where they are
+};
+
+}  // namespace
+
+std::vector<OpenEdge> chooseOpenEdges(const SurfaceModel& model, std::vector<OpenEdge> open,
+                                      const FeatureOptions& options) {
+  if (options.openEdges) return open;
+  if (!(options.gapTolerance > 0)) return {};
+  std::vector<std::uint8_t> keep(open.size(), 0);
+  tbb::parallel_for(std::size_t(0), open.size(),
+                    [&](std::size_t i) { keep[i] = isNearOther(model, open[i], options); });
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < open.size(); ++i)
+    if (keep[i]) open[kept++] = open[i];
+  open.resize(kept);
+  return open;
+}
+
+void addOpenEdges(FeatureNetwork& network, const std::vector<OpenEdge>& open, double tolerance) {
+  if (!open.empty()) Welder(network, tolerance).run(open);
+}
+
+}  // namespace pm

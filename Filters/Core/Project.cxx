@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Project.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "NodeMover.h"
+#include "WallSurface.h"
+
+namespace pm {
+namespace {
+
+// A wall node this near, in units of its length scale, has arrived.
+constexpr double kArrived = 1e-4;
+// Height of the wall prism the bases are led to, in units of the length scale: room for the layers, and near enough
+// that the octree cells below take up most of the stretch.
+constexpr double kPrismHeight = 0.4;
+// Octree nodes within so many edges of the bases may move; the core beyond keeps its perfect cells.
+constexpr int kInnerRings = 2;
+
+class Projector {
+ public:
+  Projector(PolyMesh& mesh, const DistanceField& field, const ProjectOptions& options)
+      : mesh_(mesh), field_(field), options_(options), mover_(mesh, options.limits), wall_(wallSurface(mesh)) {
+    std::vector<Id> bases;
+    for (Id p : wall_.nodes) bases.push_back(mesh.base[p]);
+    wallGroups_ = mover_.colour(wall_.nodes);
+    baseGroups_ = mover_.colour(bases);
+    rowOfBase_.assign(mesh.points.size(), kNone);
+    for (Id row = 0; row < wall_.size(); ++row) rowOfBase_[bases[row]] = row;
+    collectInner(bases);
+  }
+
+  void run(Monitor& monitor) {
+    const int rounds = std::max(options_.rounds, 1);
+    for (int round = 0; round < rounds; ++round) {
+      monitor.check(double(round) / rounds, "projection");
+      // The way is spread over the first half of the rounds, so that all parts of the front arrive together.
+      const double part = 1.0 / std::max(1, rounds / 2 - round);
+      drift(part);
+      for (int sweep = 0; sweep < options_.smoothingSweeps; ++sweep) smoothFront(part);
+      leadBases();
+      if (round % 2 == 1) smoothInner();
+    }
+    monitor.check(0.95, "projection");
+    for (int sweep = 0; sweep < 2; ++sweep) {
+      drift(1);
+      leadBases();
+    }
+    drift(1);
+  }
+
+ private:
+  double scale(Id p) const { return wall_.scale[wall_.rowOf[p]]; }
+
+  /// Outward unit normal of the wall at a node, from the faces around it.
+  Vec3 normalAt(Id p) const {
+    Vec3 n = Vec3::Zero();
+    for (Id f : wall_.faces[wall_.rowOf[p]]) n += mover_.faceNormal(f);
+    const double length = n.norm();
+    return length > 0 ? Vec3(n / length) : n;
+  }
+
+  // 4.6.2, front drifting: towards the closest point, part of the way.
+  void drift(double part) {
+    NodeMover::forEach(wallGroups_, [&](Id p) {
+      const Vec3 x = mesh_.points[p];
+      const Vec3 way = field_.closest(x).point - x;
+      if (way.norm() < kArrived * scale(p)) {
+        mover_.move(p, x + way);
+        return;
+      }
+      if (mover_.drift(p, x + part * way, 1) == 1) return;
+      // The prism is in the way: take its foot along.
+      const Id b = mesh_.base[p];
+      if (!mover_.moveTogether({p, b}, {x + part * way, mesh_.points[b] + 0.5 * part * way}))
+        mover_.drift(p, x + part * way, 3);
+    });
+  }
+
+  // 4.5.2: smooth in the tangent plane estimated from the mesh, then back towards the geometry.
+  void smoothFront(double part) {
+    NodeMover::forEach(wallGroups_, [&](Id p) {
+      const Id row = wall_.rowOf[p];
+      const Vec3 x = mesh_.points[p];
+      Vec3 mean = Vec3::Zero();
+      double weight = 0;
+      for (Id f : wall_.faces[row]) {  // area-weighted face centres: independent of hanging nodes on the edges
+        const double area = mover_.faceNormal(f).norm();
+        mean += area * (mover_.faceCentre(f) - x);
+        weight += area;
+      }
+      if (!(weight > 0)) return;
+      mean /= weight;
+      const Vec3 n = normalAt(p);
+      const Vec3 tangential = mean - mean.dot(n) * n;
+      const Vec3 moved = x + 0.5 * tangential;
+      const Vec3 onto = field_.closest(moved).point;
+      // Keep the height above the geometry the node had got to; only the drift brings it nearer.
+      const double now = std::sqrt(field_.closest(x).distance2);
+      const double then = (onto - moved).norm();
+      const Vec3 target = then > 0 && part == 1 ? Vec3(moved + (onto - moved) * std::max(0.0, 1 - now / then)) : moved;
+      mover_.drift(p, part == 1 ? target : moved, 1);
+    });
+  }
+
+  // 4.5.3: bases below their wall nodes, at one smooth height; ideal places are averaged with the neighbours'.
+  void leadBases() {
+    std::vector<Vec3> ideal(wall_.size()), smooth(wall_.size());
+    for (Id row = 0; row < wall_.size(); ++row) {
+      const Id p = wall_.nodes[row];
+      ideal[row] = -kPrismHeight * wall_.scale[row] * normalAt(p);
+    }
+    for (int sweep = 0; sweep < 2; ++sweep) {
+      for (Id row = 0; row < wall_.size(); ++row) {
+        Vec3 sum = Vec3::Zero();
+        for (Id other : wall_.neighbours[row]) sum += ideal[other];
+        smooth[row] = 0.5 * ideal[row] + 0.5 * sum / std::max<double>(1, wall_.neighbours[row].size());
+      }
+      ideal.swap(smooth);
+    }
+    NodeMover::forEach(baseGroups_, [&](Id b) {
+      const Id row = rowOfBase_[b];
+      mover_.drift(b, mesh_.points[b] + 0.5 * (mesh_.points[wall_.nodes[row]] + ideal[row] - mesh_.points[b]), 1);
+    });
+  }
+
+  // 4.5.1: Laplacian, kept only where the worst local measure gets better.
+  void smoothInner() {
+    NodeMover::forEach(innerGroups_, [&](Id p) {
+      Vec3 mean = Vec3::Zero();
+      for (Id c : mover_.cellsOf(p)) mean += mover_.cellCentre(c);
+      mover_.improve(p, 0.5 * (mesh_.points[p] + mean / double(mover_.cellsOf(p).size())));
+    });
+  }
+
+  // Rings of nodes below the bases, by cells.
+  void collectInner(const std::vector<Id>& bases) {
+    std::vector<std::uint8_t> seen(mesh_.points.size(), 0);
+    for (Id p : wall_.nodes) seen[p] = 1;
+    std::vector<Id> ring = bases, inner;
+    for (Id b : bases) seen[b] = 1;
+    const Csr<Id> points = cellPoints(mesh_);
+    for (int k = 0; k < kInnerRings; ++k) {
+      std::vector<Id> next;
+      for (Id p : ring)
+        for (Id c : mover_.cellsOf(p))
+          for (Id q : points[c])
+            if (!seen[q]) {
+              seen[q] = 1;
+              next.push_back(q);
+            }
+      std::sort(next.begin(), next.end());
+      inner.insert(inner.end(), next.begin(), next.end());
+      ring.swap(next);
+    }
+    innerGroups_ = mover_.colour(inner);
+  }
+
+  PolyMesh& mesh_;
+  const DistanceField& field_;
+  const ProjectOptions& options_;
+  NodeMover mover_;
+  WallSurface wall_;
+  std::vector<std::vector<Id>> wallGroups_, baseGroups_, innerGroups_;
+  std::vector<Id> rowOfBase_;
+};
+
+}  // namespace
+
+void project(PolyMesh& mesh, DistanceField& field, const ProjectOptions& options, Monitor& monitor) {
+  monitor.check(0, "distance field");
+  std::vector<Vec3> walls;
+  for (std::size_t p = 0; p < mesh.points.size(); ++p)
+    if (mesh.base[p] != kNone) walls.push_back(mesh.points[p]);
+  field.fill(walls);
+  Projector(mesh, field, options).run(monitor);
+  mesh.stage = Stage::Projected;
+  canonicalise(mesh);
+}
+
+}  // namespace pm

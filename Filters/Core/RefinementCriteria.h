@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which octree cells the geometry asks to split: criteria 1-5 and 9 of thesis 3.4.4.
+#pragma once
+
+#include <vector>
+
+#include "FeatureEdges.h"
+#include "OctreeBuilder.h"
+#include "OctreeDecompose.h"
+
+namespace pm {
+
+class RefinementCriteria {
+ public:
+  RefinementCriteria(const SurfaceModel& model, const Brick& brick, const OctreeDecomposeOptions& options);
+
+  /// The leaves of the batch (all of one level, below the finest) that should be split, ascending. Parallel.
+  std::vector<Id> select(const OctreeBuilder& builder, const std::vector<Id>& batch) const;
+
+ private:
+  /// What the surface is like inside one cell.
+  struct Summary {
+    Vec3 normal = Vec3::Zero();  ///< mean of the normals, signs aligned
+    Vec3 centre = Vec3::Zero();  ///< mean of the cut figures' centres
+    bool split = false, cut = false;
+  };
+  bool sizeAsksFor(const OctreeBuilder& builder, const OctreeBuilder::Node& n) const;
+  bool featureInside(const Box& box) const;
+  Summary look(const OctreeBuilder& builder, const OctreeBuilder::Node& n) const;
+  bool facing(const Vec3& normalA, const Vec3& normalB, const Vec3& between) const;
+  bool disagree(const Summary& a, const Summary& b) const;
+
+  const SurfaceModel& model_;
+  const OctreeDecomposeOptions& options_;
+  FeatureGraph features_;
+  std::vector<double> patchSize_;  // by patch id, 0 = none
+  double finest_;
+  double cosNormal_, cosHalfNormal_, sinClose_;
+};
+
+}  // namespace pm

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The input geometry as the mesher sees it: a soup of triangles in patches, with an exact closest point.
+//
+// Nothing is assumed of the triangles but finite coordinates: they may overlap, intersect, repeat, be flipped or leave
+// gaps. Points are merged only where they are bitwise equal; triangles of no area and exact repetitions are dropped.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "Types.h"
+
+namespace pm {
+
+/// Answer of a closest-point query; triangle is kNone until something was found.
+struct Closest {
+  Vec3 point = Vec3::Zero();
+  double distance2 = std::numeric_limits<double>::infinity();
+  Id triangle = kNone;
+};
+
+class SurfaceModel {
+ public:
+  using Triangle = std::array<Id, 3>;
+
+  /// points: #P by 3 in the user's units; triangles: #T by 3 point ids; patchOfTriangle: #T ids into patchNames.
+  /// Throws InputError when there are no triangles, a coordinate is not finite, or an id is out of range.
+  SurfaceModel(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
+               const std::vector<Id>& patchOfTriangle, std::vector<std::string> patchNames);
+  ~SurfaceModel();
+  SurfaceModel(const SurfaceModel&) = delete;
+  SurfaceModel& operator=(const SurfaceModel&) = delete;
+
+  const std::vector<Vec3>& points() const { return points_; }
+  const std::vector<Triangle>& triangles() const { return triangles_; }
+  const std::vector<std::string>& patchNames() const { return patchNames_; }
+  Id triangleCount() const { return static_cast<Id>(triangles_.size()); }
+  Id patchOf(Id triangle) const { return patch_[triangle]; }
+  const Vec3& normal(Id triangle) const { return normals_[triangle]; }  ///< unit length
+  const Vec3& corner(Id triangle, int k) const { return points_[triangles_[triangle][k]]; }
+  const Box& bounds() const { return bounds_; }
+  /// Equal for equal content; keys caches and recognises changed geometry.
+  std::uint64_t contentHash() const { return hash_; }
+
+  /// Exact closest point; ties go to the smallest triangle id. seed, when given, must itself be a point of the model:
+  /// it only prunes the search and never changes the answer. Thread-safe.
+  Closest closest(const Vec3& p, const Closest& seed = {}) const;
+  /// Closest point on one triangle.
+  Closest closestOnTriangle(const Vec3& p, Id triangle) const;
+  /// Ids of the triangles whose boxes overlap the box, ascending.
+  std::vector<Id> trianglesNear(const Box& box) const;
+
+ private:
+  struct Hierarchy;  // bounding-volume tree over the triangles
+  std::vector<Vec3> points_;
+  std::vector<Triangle> triangles_;
+  std::vector<Id> patch_;
+  std::vector<Vec3> normals_;
+  std::vector<std::string> patchNames_;
+  Box bounds_;
+  std::uint64_t hash_ = 0;
+  std::unique_ptr<Hierarchy> tree_;
+};
+
+}  // namespace pm

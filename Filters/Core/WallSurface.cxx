@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "WallSurface.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+namespace pm {
+namespace {
+
+void numberNodes(const PolyMesh& mesh, const std::vector<Id>& wallFaces, WallSurface& wall) {
+  wall.rowOf.assign(mesh.points.size(), kNone);
+  for (Id f : wallFaces)
+    for (Id p : mesh.faces[f]) wall.rowOf[p] = 0;
+  for (std::size_t p = 0; p < mesh.points.size(); ++p)
+    if (wall.rowOf[p] == 0) {
+      wall.rowOf[p] = wall.size();
+      wall.nodes.push_back(static_cast<Id>(p));
+    }
+}
+
+/// Turns counts stored at offsets[i + 1] into offsets.
+void sumUp(std::vector<Id>& offsets) {
+  for (std::size_t i = 1; i < offsets.size(); ++i) offsets[i] += offsets[i - 1];
+}
+
+void joinFaces(const PolyMesh& mesh, const std::vector<Id>& wallFaces, WallSurface& wall) {
+  wall.faces.offsets.assign(wall.nodes.size() + 1, 0);
+  for (Id f : wallFaces)
+    for (Id p : mesh.faces[f]) ++wall.faces.offsets[wall.rowOf[p] + 1];
+  sumUp(wall.faces.offsets);
+  wall.faces.values.resize(wall.faces.offsets.back());
+  std::vector<Id> next(wall.faces.offsets.begin(), wall.faces.offsets.end() - 1);
+  for (Id f : wallFaces)
+    for (Id p : mesh.faces[f]) wall.faces.values[next[wall.rowOf[p]]++] = f;
+}
+
+/// Every edge twice at both its ends (once from each of its faces), then sorted and thinned.
+void joinNodes(const PolyMesh& mesh, const std::vector<Id>& wallFaces, WallSurface& wall) {
+  std::vector<Id> offsets(wall.nodes.size() + 1, 0);
+  for (Id f : wallFaces)
+    for (Id p : mesh.faces[f]) offsets[wall.rowOf[p] + 1] += 2;
+  sumUp(offsets);
+  std::vector<Id> values(offsets.back());
+  std::vector<Id> next(offsets.begin(), offsets.end() - 1);
+  for (Id f : wallFaces) {
+    const Span<Id> row = mesh.faces[f];
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      const Id a = wall.rowOf[row[k]], b = wall.rowOf[row[(k + 1) % row.size()]];
+      values[next[a]++] = b;
+      values[next[b]++] = a;
+    }
+  }
+  wall.neighbours.clear();
+  wall.neighbours.offsets.reserve(offsets.size());
+  wall.neighbours.values.reserve(values.size() / 2);
+  for (Id i = 0; i < wall.size(); ++i) {
+    const auto first = values.begin() + offsets[i], last = values.begin() + offsets[i + 1];
+    std::sort(first, last);
+    wall.neighbours.values.insert(wall.neighbours.values.end(), first, std::unique(first, last));
+    wall.neighbours.offsets.push_back(static_cast<Id>(wall.neighbours.values.size()));
+  }
+}
+
+void measureScales(const PolyMesh& mesh, WallSurface& wall) {
+  std::vector<double> own(wall.nodes.size());
+  wall.scale.resize(wall.nodes.size());
+  const tbb::blocked_range<Id> all(0, wall.size(), 1024);
+  tbb::parallel_for(all, [&](const tbb::blocked_range<Id>& range) {
+    for (Id i = range.begin(); i != range.end(); ++i) {
+      double sum = 0;
+      for (Id j : wall.neighbours[i]) sum += (mesh.points[wall.nodes[i]] - mesh.points[wall.nodes[j]]).norm();
+      own[i] = sum / static_cast<double>(wall.neighbours[i].size());
+    }
+  });
+  // One averaging: where projection has crowded nodes, their own edges alone would understate the scale.
+  tbb::parallel_for(all, [&](const tbb::blocked_range<Id>& range) {
+    for (Id i = range.begin(); i != range.end(); ++i) {
+      double sum = own[i];
+      for (Id j : wall.neighbours[i]) sum += own[j];
+      wall.scale[i] = sum / static_cast<double>(wall.neighbours[i].size() + 1);
+    }
+  });
+}
+
+}  // namespace
+
+WallSurface wallSurface(const PolyMesh& mesh) {
+  WallSurface wall;
+  std::vector<Id> wallFaces;
+  for (Id b = 0; b < mesh.boundaryFaces(); ++b)
+    if (mesh.isWallPatch(mesh.patch[b])) wallFaces.push_back(mesh.internalFaces() + b);
+  numberNodes(mesh, wallFaces, wall);
+  joinFaces(mesh, wallFaces, wall);
+  joinNodes(mesh, wallFaces, wall);
+  measureScales(mesh, wall);
+  return wall;
+}
+
+}  // namespace pm

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkMeshValidity.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "MeshPacking.h"
+#include "MeshQuality.h"
+#include "vtkCellData.h"
+#include "vtkFloatArray.h"
+#include "vtkInformationVector.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPolyData.h"
+#include "vtkUnstructuredGrid.h"
+
+struct vtkMeshValidity::Findings {
+  pm::QualitySummary summary;
+  std::string description;
+  vtkIdType internalFaces = 0, boundaryFaces = 0;
+};
+
+vtkStandardNewMacro(vtkMeshValidity);
+
+vtkMeshValidity::vtkMeshValidity() : vtkValidMeshStage(1, -1), Found(std::make_unique<Findings>()) {}
+vtkMeshValidity::~vtkMeshValidity() = default;
+
+namespace {
+
+void addCellArray(vtkUnstructuredGrid* grid, const char* name, const std::vector<float>& values) {
+  vtkNew<vtkFloatArray> array;
+  array->SetName(name);
+  array->SetNumberOfValues(static_cast<vtkIdType>(values.size()));
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
+  grid->GetCellData()->AddArray(array);
+}
+
+/// For each cell the worst value of its faces; worse(a, b): a is worse than b.
+template <class Value, class Worse>
+std::vector<float> worstOfFaces(const pm::PolyMesh& mesh, float best, const Value& value,
+                                const Worse& worse) {
+  std::vector<float> result(mesh.cellCount, best);
+  for (pm::Id f = 0; f < mesh.faceCount(); ++f) {
+    const float v = static_cast<float>(value(f));
+    const auto take = [&](pm::Id cell) {
+      if (worse(v, result[cell])) result[cell] = v;
+    };
+    take(mesh.owner[f]);
+    if (f < mesh.internalFaces()) take(mesh.neighbour[f]);
+  }
+  return result;
+}
+
+void addMeasures(const pm::PolyMesh& mesh, const pm::MeshMeasures& m, vtkUnstructuredGrid* grid) {
+  const double unit = mesh.finestSize > 0 ? mesh.finestSize * mesh.finestSize * mesh.finestSize : 1.0;
+  std::vector<float> volume(mesh.cellCount), tet(mesh.cellCount);
+  for (pm::Id c = 0; c < mesh.cellCount; ++c) {
+    volume[c] = static_cast<float>(m.cells[c].volume / unit);
+    tet[c] = static_cast<float>(m.cells[c].minTet / unit);
+  }
+  const auto larger = [](float a, float b) { return a > b; };
+  const auto smaller = [](float a, float b) { return a < b; };
+  addCellArray(grid, "CellVolume", volume);
+  addCellArray(grid, "SmallestTet", tet);
+  addCellArray(grid, "Degradation",
+               worstOfFaces(
+                   mesh, 1.0f, [&](pm::Id f) { return m.faces[f].eta; }, smaller));
+  addCellArray(grid, "Angle",
+               worstOfFaces(
+                   mesh, 0.0f, [&](pm::Id f) { return m.faceAngle[f]; }, larger));
+  addCellArray(grid, "Warpage",
+               worstOfFaces(
+                   mesh, 0.0f, [&](pm::Id f) { return m.faces[f].warpage; }, larger));
+  addCellArray(grid, "Skewness",
+               worstOfFaces(
+                   mesh, 0.0f, [&](pm::Id f) { return m.faceSkew[f]; }, larger));
+}
+
+}  // namespace
+
+void vtkMeshValidity::Run(vtkInformationVector** inputs, vtkUnstructuredGrid* grid, vtkPolyData* boundary,
+                          pm::Monitor& monitor) {
+  *this->Found = Findings();
+  vtkUnstructuredGrid* input = vtkUnstructuredGrid::GetData(inputs[0]);
+  const pm::PolyMesh mesh = pm::unpackMesh(input, "Mesh Validity", {});
+  monitor.check(0.3, "measuring");
+  const pm::MeshMeasures measures = pm::measure(mesh);
+  pm::QualityLimits limits = this->Limits();
+  if (mesh.stage == pm::Stage::Refined) limits.minVolume = limits.minEtaInternal = limits.minEtaBoundary = 0;
+  this->Found->summary = pm::summarise(mesh, measures, limits);
+  this->Found->description = pm::checkTopology(mesh) + pm::describeViolations(mesh, measures, limits);
+  if (this->Found->summary.violations == 0 && !this->Found->description.empty())
+    this->Found->summary.violations = 1;
+  this->Found->internalFaces = mesh.internalFaces();
+  this->Found->boundaryFaces = mesh.boundaryFaces();
+  monitor.check(0.8, "storing measures");
+  grid->ShallowCopy(input);
+  addMeasures(mesh, measures, grid);
+  pm::packBoundary(mesh, boundary);
+}
+
+vtkIdType vtkMeshValidity::GetViolations() const { return this->Found->summary.violations; }
+const char* vtkMeshValidity::GetDescription() const { return this->Found->description.c_str(); }
+vtkIdType vtkMeshValidity::GetInternalFaces() const { return this->Found->internalFaces; }
+vtkIdType vtkMeshValidity::GetBoundaryFaces() const { return this->Found->boundaryFaces; }
+double vtkMeshValidity::GetTotalVolume() const { return this->Found->summary.totalVolume; }
+double vtkMeshValidity::GetWorstVolume() const { return this->Found->summary.minVolume; }
+double vtkMeshValidity::GetWorstTet() const { return this->Found->summary.minTet; }
+double vtkMeshValidity::GetWorstEtaInternal() const { return this->Found->summary.minEtaInternal; }
+double vtkMeshValidity::GetWorstEtaBoundary() const { return this->Found->summary.minEtaBoundary; }
+double vtkMeshValidity::GetWorstAngleInternal() const { return this->Found->summary.maxAngleInternal; }
+double vtkMeshValidity::GetWorstAngleBoundary() const { return this->Found->summary.maxAngleBoundary; }
+double vtkMeshValidity::GetWorstWarpage() const { return this->Found->summary.maxWarpage; }
+double vtkMeshValidity::GetWorstSkewInternal() const { return this->Found->summary.maxSkewInternal; }
+double vtkMeshValidity::GetWorstSkewBoundary() const { return this->Found->summary.maxSkewBoundary; }
+double vtkMeshValidity::GetWorstOpenness() const { return this->Found->summary.maxOpenness; }
+
+void vtkMeshValidity::PrintSelf(ostream& os, vtkIndent indent) {
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Violations: " << this->GetViolations() << "\n";
+  os << indent << "Description: " << this->GetDescription() << "\n";
+}

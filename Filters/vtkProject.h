@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkProject
+ * @brief stage 4: wall nodes drift onto the geometry, valid at every move
+ *
+ * Input 0: the grid of vtkDummyLayer; input 1: the geometry. Source: thesis sections 4.4.1, 4.5, 4.6.2.
+ */
+#pragma once
+
+#include "vtkValidMeshStage.h"
+
+namespace pm {
+struct ProjectOptions;
+}
+
+class PROJECTIONMESHERFILTERS_EXPORT vtkProject : public vtkValidMeshStage {
+ public:
+  static vtkProject* New();
+  vtkTypeMacro(vtkProject, vtkValidMeshStage);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /** Drifting rounds; each moves a node a growing part of its way. */
+  vtkSetClampMacro(Rounds, int, 1, 1000);
+  vtkGetMacro(Rounds, int);
+  ///@}
+  ///@{
+  /** Front smoothing sweeps in a round. */
+  vtkSetClampMacro(SmoothingSweeps, int, 0, 1000);
+  vtkGetMacro(SmoothingSweeps, int);
+  ///@}
+
+  /** The properties as the kernel takes them. */
+  pm::ProjectOptions Options() const;
+
+ protected:
+  vtkProject();
+  ~vtkProject() override = default;
+  void Run(vtkInformationVector** inputs, vtkUnstructuredGrid* mesh, vtkPolyData* boundary,
+           pm::Monitor& monitor) override;
+
+  int Rounds;
+  int SmoothingSweeps;
+
+ private:
+  vtkProject(const vtkProject&) = delete;
+  void operator=(const vtkProject&) = delete;
+};

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkProjectionMesh.h"
+
+#include <algorithm>
+
+#include "GeometryInput.h"
+#include "MeshPacking.h"
+#include "Pipeline.h"
+#include "vtkInformationVector.h"
+#include "vtkObjectFactory.h"
+#include "vtkPolyData.h"
+#include "vtkUnstructuredGrid.h"
+
+struct vtkProjectionMesh::LastRun {
+  pm::PipelineReport stages;
+  std::vector<std::string> patchNames;
+  std::vector<vtkIdType> patchFaces;
+};
+
+vtkStandardNewMacro(vtkProjectionMesh);
+
+vtkProjectionMesh::vtkProjectionMesh() : vtkValidMeshStage(1, 0), Report(std::make_unique<LastRun>()) {
+  this->StopAfter = static_cast<int>(pm::PipelineOptions().stopAfter);
+}
+
+vtkProjectionMesh::~vtkProjectionMesh() = default;
+
+vtkMTimeType vtkProjectionMesh::GetMTime() {
+  const std::initializer_list<vtkObject*> stages = {this->Octree,     this->Front,    this->Layer,
+                                                    this->Projection, this->Features, this->Refine};
+  vtkMTimeType time = this->Superclass::GetMTime();
+  for (vtkObject* stage : stages) time = std::max(time, stage->GetMTime());
+  return time;
+}
+
+void vtkProjectionMesh::Run(vtkInformationVector** inputs, vtkUnstructuredGrid* mesh, vtkPolyData* boundary,
+                            pm::Monitor& monitor) {
+  *this->Report = LastRun();
+  pm::PipelineOptions options;
+  options.octree = this->Octree->Options();
+  options.front = this->Front->Options();
+  options.layer = this->Layer->Options();
+  options.project = this->Projection->Options();
+  options.features = this->Features->Options();
+  options.refine = this->Refine->Options();
+  options.layer.limits = options.project.limits = options.features.limits = options.refine.limits =
+      this->Limits();
+  options.stopAfter = static_cast<pm::Stage>(this->StopAfter);
+
+  const auto model = pm::surfaceFrom(vtkDataObject::GetData(inputs[0]), this->PatchArray);
+  const pm::PolyMesh result = pm::runPipeline(*model, options, monitor, &this->Report->stages);
+  this->Report->patchNames = result.patchNames;
+  this->Report->patchFaces.assign(result.patchNames.size(), 0);
+  for (pm::Id patch : result.patch) ++this->Report->patchFaces[patch];
+  pm::packMesh(result, mesh);
+  pm::packRegions(this->Report->stages.front, mesh);
+  pm::packBoundary(result, boundary);
+}
+
+int vtkProjectionMesh::GetNumberOfPatches() const {
+  return static_cast<int>(this->Report->patchNames.size());
+}
+
+const char* vtkProjectionMesh::GetPatchName(int patch) const {
+  const bool known = patch >= 0 && patch < this->GetNumberOfPatches();
+  return known ? this->Report->patchNames[patch].c_str() : nullptr;
+}
+
+vtkIdType vtkProjectionMesh::GetPatchFaces(int patch) const {
+  const bool known = patch >= 0 && patch < this->GetNumberOfPatches();
+  return known ? this->Report->patchFaces[patch] : 0;
+}
+
+double vtkProjectionMesh::GetFeatureLength() const { return this->Report->stages.features.featureLength; }
+double vtkProjectionMesh::GetResolvedLength() const { return this->Report->stages.features.resolvedLength; }
+vtkIdType vtkProjectionMesh::GetCorners() const { return this->Report->stages.features.corners; }
+vtkIdType vtkProjectionMesh::GetResolvedCorners() const {
+  return this->Report->stages.features.resolvedCorners;
+}
+vtkIdType vtkProjectionMesh::GetWallFaces() const { return this->Report->stages.refine.wallFaces; }
+
+vtkIdType vtkProjectionMesh::GetFacesWithLayers(int layers) const {
+  const std::vector<pm::Id>& faces = this->Report->stages.refine.facesByLayers;
+  return layers >= 1 && layers <= static_cast<int>(faces.size()) ? faces[layers - 1] : 0;
+}
+
+void vtkProjectionMesh::PrintSelf(ostream& os, vtkIndent indent) {
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "StopAfter: " << this->StopAfter << "\n";
+  for (vtkObject* stage : std::initializer_list<vtkObject*>{this->Octree, this->Front, this->Layer,
+                                                            this->Projection, this->Features, this->Refine}) {
+    os << indent << stage->GetClassName() << ":\n";
+    stage->PrintSelf(os, indent.GetNextIndent());
+  }
+}

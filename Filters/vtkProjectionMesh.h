@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkProjectionMesh
+ * @brief the six stages in one filter: geometry in, final mesh out
+ *
+ * The same kernel calls as vtkOctreeDecompose .. vtkBoundaryRefine in a row, without a grid between them; the
+ * result is equal to theirs bit for bit. Properties mean what they mean there; see those classes. Where two
+ * stages have an option of the same name, SharpAngle serves both and the rounds have names of their own.
+ */
+#pragma once
+
+#include <memory>
+
+#include "vtkBoundaryRefine.h"
+#include "vtkDummyLayer.h"
+#include "vtkNew.h"
+#include "vtkOctreeDecompose.h"
+#include "vtkPaintFront.h"
+#include "vtkProject.h"
+#include "vtkResolveFeatures.h"
+
+class PROJECTIONMESHERFILTERS_EXPORT vtkProjectionMesh : public vtkValidMeshStage {
+ public:
+  static vtkProjectionMesh* New();
+  vtkTypeMacro(vtkProjectionMesh, vtkValidMeshStage);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkMTimeType GetMTime() override;
+
+/// A property that a stage's own class keeps.
+#define pmStageProperty(stage, name, type)                              \
+  virtual void Set##name(type value) { this->stage->Set##name(value); } \
+  virtual type Get##name() { return this->stage->Get##name(); }
+
+  ///@{
+  /** Stage 1, see vtkOctreeDecompose. */
+  pmStageProperty(Octree, FeatureSize, double);
+  pmStageProperty(Octree, MaximumLevel, int);
+  pmStageProperty(Octree, BaseSize, double);
+  pmStageProperty(Octree, UseDomain, bool);
+  virtual void SetDomainBounds(double xmin, double xmax, double ymin, double ymax, double zmin, double zmax) {
+    this->Octree->SetDomainBounds(xmin, xmax, ymin, ymax, zmin, zmax);
+  }
+  virtual double* GetDomainBounds() VTK_SIZEHINT(6) { return this->Octree->GetDomainBounds(); }
+  pmStageProperty(Octree, Margin, double);
+  pmStageProperty(Octree, SurfaceSize, double);
+  void AddPatchSize(const char* patch, double size) { this->Octree->AddPatchSize(patch, size); }
+  void ClearPatchSizes() { this->Octree->ClearPatchSizes(); }
+  int GetNumberOfPatchSizes() const { return this->Octree->GetNumberOfPatchSizes(); }
+  void AddRefineBox(double xmin, double xmax, double ymin, double ymax, double zmin, double zmax,
+                    double size) {
+    this->Octree->AddRefineBox(xmin, xmax, ymin, ymax, zmin, zmax, size);
+  }
+  void ClearRefineBoxes() { this->Octree->ClearRefineBoxes(); }
+  int GetNumberOfRefineBoxes() const { return this->Octree->GetNumberOfRefineBoxes(); }
+  pmStageProperty(Octree, NormalAngle, double);
+  pmStageProperty(Octree, RefineEdges, bool);
+  pmStageProperty(Octree, Separate, bool);
+  pmStageProperty(Octree, CloseAngle, double);
+  pmStageProperty(Octree, BufferCells, int);
+  pmStageProperty(Octree, CellsBetweenLevels, int);
+  pmStageProperty(Octree, MaximumCells, vtkIdType);
+  ///@}
+
+  ///@{
+  /** Stages 1 and 5: from which angle an edge is sharp, degrees. */
+  virtual void SetSharpAngle(double degrees) {
+    this->Octree->SetSharpAngle(degrees);
+    this->Features->SetSharpAngle(degrees);
+  }
+  virtual double GetSharpAngle() { return this->Features->GetSharpAngle(); }
+  ///@}
+
+  ///@{
+  /** Stage 2, see vtkPaintFront. */
+  pmStageProperty(Front, Region, int);
+  void AddSeedPoint(double x, double y, double z) { this->Front->AddSeedPoint(x, y, z); }
+  void ClearSeedPoints() { this->Front->ClearSeedPoints(); }
+  int GetNumberOfSeedPoints() const { return this->Front->GetNumberOfSeedPoints(); }
+  pmStageProperty(Front, AllowOpen, bool);
+  pmStageProperty(Front, Fill, bool);
+  ///@}
+
+  ///@{
+  /** Stage 3, see vtkDummyLayer. */
+  pmStageProperty(Layer, Thickness, double);
+  ///@}
+
+  ///@{
+  /** Stage 4, see vtkProject. */
+  virtual void SetProjectionRounds(int rounds) { this->Projection->SetRounds(rounds); }
+  virtual int GetProjectionRounds() { return this->Projection->GetRounds(); }
+  pmStageProperty(Projection, SmoothingSweeps, int);
+  ///@}
+
+  ///@{
+  /** Stage 5, see vtkResolveFeatures. */
+  pmStageProperty(Features, CornerAngle, double);
+  pmStageProperty(Features, Interfaces, bool);
+  pmStageProperty(Features, OpenEdges, bool);
+  pmStageProperty(Features, GapTolerance, double);
+  pmStageProperty(Features, ShortestCurve, double);
+  virtual void SetFeatureRounds(int rounds) { this->Features->SetRounds(rounds); }
+  virtual int GetFeatureRounds() { return this->Features->GetRounds(); }
+  ///@}
+
+  ///@{
+  /** Stage 6, see vtkBoundaryRefine. */
+  pmStageProperty(Refine, Layers, int);
+  pmStageProperty(Refine, ExpansionRatio, double);
+  pmStageProperty(Refine, FirstHeight, double);
+  ///@}
+
+  enum StageType { FRONT = 2, LAYER = 3, PROJECTED = 4, RESOLVED = 5, REFINED = 6 };
+  ///@{
+  /** The last stage to run. */
+  vtkSetClampMacro(StopAfter, int, FRONT, REFINED);
+  vtkGetMacro(StopAfter, int);
+  ///@}
+
+  ///@{
+  /** What the last run made: boundary faces of each patch, resolved features, wall faces by layers made. */
+  int GetNumberOfPatches() const;
+  const char* GetPatchName(int patch) const;
+  vtkIdType GetPatchFaces(int patch) const;
+  double GetFeatureLength() const;
+  double GetResolvedLength() const;
+  vtkIdType GetCorners() const;
+  vtkIdType GetResolvedCorners() const;
+  vtkIdType GetWallFaces() const;
+  vtkIdType GetFacesWithLayers(int layers) const;
+  ///@}
+
+ protected:
+  vtkProjectionMesh();
+  ~vtkProjectionMesh() override;
+  void Run(vtkInformationVector** inputs, vtkUnstructuredGrid* mesh, vtkPolyData* boundary,
+           pm::Monitor& monitor) override;
+
+  int StopAfter;
+  vtkNew<vtkOctreeDecompose> Octree;
+  vtkNew<vtkPaintFront> Front;
+  vtkNew<vtkDummyLayer> Layer;
+  vtkNew<vtkProject> Projection;
+  vtkNew<vtkResolveFeatures> Features;
+  vtkNew<vtkBoundaryRefine> Refine;
+
+ private:
+  vtkProjectionMesh(const vtkProjectionMesh&) = delete;
+  void operator=(const vtkProjectionMesh&) = delete;
+
+  struct LastRun;
+  std::unique_ptr<LastRun> Report;
+};

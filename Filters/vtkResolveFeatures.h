@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkResolveFeatures
+ * @brief stage 5: mesh edges onto sharp edges and patch interfaces, nodes onto corners
+ *
+ * Input 0: the grid of vtkProject; input 1: the geometry. Source: thesis section 4.7. Lengths are in the
+ * units of the geometry, angles in degrees.
+ */
+#pragma once
+
+#include "vtkValidMeshStage.h"
+
+namespace pm {
+struct ResolveFeaturesOptions;
+}
+
+class PROJECTIONMESHERFILTERS_EXPORT vtkResolveFeatures : public vtkValidMeshStage {
+ public:
+  static vtkResolveFeatures* New();
+  vtkTypeMacro(vtkResolveFeatures, vtkValidMeshStage);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /** Angle between the planes of two triangles from which their edge is sharp, degrees. */
+  vtkSetClampMacro(SharpAngle, double, 0.0, 180.0);
+  vtkGetMacro(SharpAngle, double);
+  ///@}
+  ///@{
+  /** Angle a feature curve may turn at a point before the point becomes a corner, degrees. */
+  vtkSetClampMacro(CornerAngle, double, 0.0, 180.0);
+  vtkGetMacro(CornerAngle, double);
+  ///@}
+  ///@{
+  /** Edges between patches are features. */
+  vtkSetMacro(Interfaces, bool);
+  vtkGetMacro(Interfaces, bool);
+  vtkBooleanMacro(Interfaces, bool);
+  ///@}
+  ///@{
+  /** Every open edge is a feature. */
+  vtkSetMacro(OpenEdges, bool);
+  vtkGetMacro(OpenEdges, bool);
+  vtkBooleanMacro(OpenEdges, bool);
+  ///@}
+  ///@{
+  /** An open edge this close to another surface that meets it at an angle is a feature, length. */
+  vtkSetClampMacro(GapTolerance, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(GapTolerance, double);
+  ///@}
+  ///@{
+  /** Shorter open-ended curves that join nothing are dropped, length. */
+  vtkSetClampMacro(ShortestCurve, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(ShortestCurve, double);
+  ///@}
+  ///@{
+  /** Rounds of moving nodes onto features. */
+  vtkSetClampMacro(Rounds, int, 1, 1000);
+  vtkGetMacro(Rounds, int);
+  ///@}
+
+  ///@{
+  /** What the last run reached: length of all feature curves and of the parts that mesh edges lie on;
+   * corners. */
+  vtkGetMacro(FeatureLength, double);
+  vtkGetMacro(ResolvedLength, double);
+  vtkGetMacro(Corners, vtkIdType);
+  vtkGetMacro(ResolvedCorners, vtkIdType);
+  ///@}
+
+  /** The properties as the kernel takes them. */
+  pm::ResolveFeaturesOptions Options() const;
+
+ protected:
+  vtkResolveFeatures();
+  ~vtkResolveFeatures() override = default;
+  void Run(vtkInformationVector** inputs, vtkUnstructuredGrid* mesh, vtkPolyData* boundary,
+           pm::Monitor& monitor) override;
+
+  double SharpAngle;
+  double CornerAngle;
+  bool Interfaces;
+  bool OpenEdges;
+  double GapTolerance;
+  double ShortestCurve;
+  int Rounds;
+
+  double FeatureLength = 0;
+  double ResolvedLength = 0;
+  vtkIdType Corners = 0;
+  vtkIdType ResolvedCorners = 0;
+
+ private:
+  vtkResolveFeatures(const vtkResolveFeatures&) = delete;
+  void operator=(const vtkResolveFeatures&) = delete;
+};
