@@ -227,15 +227,20 @@ def make_filters(pm, options):
     filters = [octree, front, pm.vtkDummyLayer(), pm.vtkProject(), pm.vtkResolveFeatures(), refine]
     for stage in filters:
         stage.SetThreads(options.threads)
+        stage.SetPatchArray("PatchId")  # the reader's: solids and groups, in each of several files
     return filters[:options.stop_after + 1]
 
 
 def read_geometry(pm, runner, options):
-    reader = pm.vtkSurfaceReader()
-    for path in options.geometry:
-        reader.AddFileName(path)
-    runner.run("read", reader)
-    return reader.GetOutputDataObject(0)
+    """One file's surface, or a block for each of several."""
+    from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
+    blocks = vtkMultiBlockDataSet()
+    for i, path in enumerate(options.geometry):
+        reader = pm.vtkSurfaceReader()
+        reader.SetFileName(path)
+        runner.run("read", reader)
+        blocks.SetBlock(i, reader.GetOutputDataObject(0))
+    return blocks if len(options.geometry) > 1 else blocks.GetBlock(0)
 
 
 def mesh_geometry(pm, runner, options, geometry):
@@ -268,7 +273,8 @@ def write_results(pm, runner, options, last):
     if options.stop_after > 0:
         writer = pm.vtkPolyMeshWriter()
         writer.SetInputDataObject(last.GetOutputDataObject(0))
-        writer.SetFileName(os.path.join(options.output, "polyMesh"))
+        writer.SetDirectory(os.path.join(options.output, "polyMesh"))
+        writer.BinaryOff()
         runner.run("write polyMesh", writer, writer.Write)
 
 
@@ -302,7 +308,8 @@ def main(arguments):
         options.geometry = [EXAMPLE]
         options.feature_size = options.feature_size or EXAMPLE_FEATURE_SIZE
     clear_output(options)
-    from projectionmesher import ProjectionMesherFilters as pm
+    import vtkmodules.vtkIOCore  # noqa: F401  the writers' base
+    from projection_mesher import ProjectionMesherFilters as pm
     import mesh_report
     runner = Runner()
     geometry = read_geometry(pm, runner, options)

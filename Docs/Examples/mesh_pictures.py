@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Pictures of a mesh: mesh_pictures.py FOLDER reads mesh.vtu and boundary.vtp there and writes section.png, a plane cut
 with mesh lines, and surface.png, the boundary coloured by patch. Run with pvpython; without a display, under xvfb-run."""
+import itertools
 import os
 import sys
 
@@ -14,10 +15,8 @@ from vtkmodules.vtkFiltersCore import vtkCutter, vtkThreshold
 from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
 from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
-from vtkmodules.vtkRenderingAnnotation import vtkLegendBoxActor
 from vtkmodules.vtkRenderingCore import (vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow, vtkTextActor,
                                          vtkWindowToImageFilter)
-from vtkmodules.vtkFiltersSources import vtkPlaneSource
 
 SIZE = (1400, 1000)
 BACKGROUND = (0.96, 0.96, 0.95)
@@ -101,19 +100,28 @@ def cut_grid(grid, axis, position):
     cutter.Update()
     cut = cutter.GetOutput()
     layer = cut.GetCellData().GetArray("Layer")
-    kind = (vtk_to_numpy(layer) > 0).astype(numpy.uint8) if layer else numpy.zeros(cut.GetNumberOfCells(), numpy.uint8)
-    kind = numpy_to_vtk(kind, deep=True)
+    kind = vtk_to_numpy(layer) > 0 if layer else numpy.zeros(cut.GetNumberOfCells(), bool)
+    kind = numpy_to_vtk(kind.astype(numpy.float32), deep=True)
     kind.SetName("Kind")
     cut.GetCellData().SetScalars(kind)
     return cut
 
 
+def clear_position(grid, axis, middle, window):
+    """Where near the middle the plane is farthest from any point: a cutter makes a mess of cells it only grazes."""
+    x = vtk_to_numpy(grid.GetPoints().GetData())[:, axis]
+    x = numpy.sort(x[numpy.abs(x - middle) < window])
+    if len(x) < 2:
+        return middle
+    widest = numpy.argmax(numpy.diff(x))
+    return (x[widest] + x[widest + 1]) / 2
+
+
 def section(grid, focus, path):
-    """The plane through the middle of focus, square to its shortest side; slightly beside the middle, where a grid is
-    likely to have a plane of faces of its own."""
+    """A plane through the middle of focus, square to its shortest side."""
     sides = [focus[2 * a + 1] - focus[2 * a] for a in range(3)]
     axis = sides.index(min(sides))
-    position = focus[2 * axis] + 0.5037 * sides[axis]
+    position = clear_position(grid, axis, focus[2 * axis] + 0.5 * sides[axis], 0.04 * sides[axis])
     cut = cut_grid(grid, axis, position)
     if cut.GetNumberOfCells() == 0:
         raise RuntimeError("the section is empty")
@@ -123,13 +131,10 @@ def section(grid, focus, path):
     lines.GetProperty().SetColor(*LINES)
     lines.GetProperty().SetLineWidth(1.2)
     lines.GetProperty().LightingOff()
-    renderer = new_renderer([face, lines], f"{'xyz'[axis]} = {position:.4g}")
-    camera = renderer.GetActiveCamera()
-    camera.ParallelProjectionOn()
-    direction = [(0.0, 0.0, 0.0), (0.0, 0.0, 0.0)]
+    renderer = new_renderer([face, lines, text_actor(f"{'xyz'[axis]} = {position:.4g}", 24, 20)])
+    renderer.GetActiveCamera().ParallelProjectionOn()
     direction, up = (((1, 0, 0), (0, 0, 1)), ((0, -1, 0), (0, 0, 1)), ((0, 0, 1), (0, 1, 0)))[axis]
-    frame(renderer, focus, direction, up, 1.0)
-    save(renderer, path)
+    save(renderer, numpy.array(list(itertools.product(*numpy.reshape(focus, (3, 2))))), direction, up, path)
 
 
 # ---------------------------------------------------------------------------------------------------- the surface
@@ -149,7 +154,7 @@ def only_patches(boundary, patches):
     threshold = vtkThreshold()
     threshold.SetInputData(boundary)
     threshold.SetInputArrayToProcess(0, 0, 0, 1, "Shown")
-    threshold.SetLowerThreshold(0.5)
+    threshold.SetUpperThreshold(0.5)
     threshold.SetThresholdFunction(vtkThreshold.THRESHOLD_UPPER)
     surface = vtkGeometryFilter()
     surface.SetInputConnection(threshold.GetOutputPort())
@@ -159,72 +164,84 @@ def only_patches(boundary, patches):
     return shown
 
 
+def patch_colours(boundary, count):
+    """Plain grey for the patch of most faces, the other colours in order of size."""
+    sizes = numpy.bincount(vtk_to_numpy(boundary.GetCellData().GetArray("PatchId")), minlength=count)
+    rank = numpy.argsort(numpy.argsort(-sizes, kind="stable"))
+    return [COLOURS[r % len(COLOURS)] for r in rank]
+
+
 def surface(shown, names, patches, path):
-    table = lookup(COLOURS, len(names))
+    table = lookup(patch_colours(shown, len(names)), len(names))
     actor = actor_of(shown, table)
     actor.GetProperty().EdgeVisibilityOn()
     actor.GetProperty().SetEdgeColor(*LINES)
     actor.GetProperty().SetInterpolationToFlat()
     actor.GetProperty().SetAmbient(0.25)
     actor.GetProperty().SetDiffuse(0.75)
-    renderer = new_renderer([actor], None)
-    if len(patches) <= 12:
-        renderer.AddActor(legend(names, patches, table))
-    frame(renderer, shown.GetBounds(), (-0.45, -0.8, 0.4), (0, 0, 1), 1.25)
-    save(renderer, path)
+    labels = legend(names, patches, table) if len(patches) <= 20 else []
+    renderer = new_renderer([actor] + labels)
+    points = vtk_to_numpy(shown.GetPoints().GetData())
+    save(renderer, points, (-0.45, -0.8, 0.4), (0, 0, 1), path)
 
 
 def legend(names, patches, table):
-    box = vtkLegendBoxActor()
-    box.SetNumberOfEntries(len(patches))
-    square = vtkPlaneSource()
-    square.Update()
-    for row, patch in enumerate(patches):
-        box.SetEntry(row, square.GetOutput(), names[patch], table.GetTableValue(patch)[:3])
-        box.SetEntryColor(row, *table.GetTableValue(patch)[:3])
-    box.GetEntryTextProperty().SetColor(*TEXT)
-    box.BorderOff()
-    box.GetPositionCoordinate().SetValue(0.02, 0.02)
-    box.GetPosition2Coordinate().SetValue(0.18, 0.035 * len(patches))
-    return box
+    """Patch names on their colours, from the lower left corner upwards."""
+    labels = []
+    for row, patch in enumerate(reversed(patches)):
+        label = text_actor(f" {names[patch]} ", 24, 20 + 34 * row)
+        label.GetTextProperty().SetBackgroundColor(*table.GetTableValue(patch)[:3])
+        label.GetTextProperty().SetBackgroundOpacity(1.0)
+        labels.append(label)
+    return labels
 
 
 # -------------------------------------------------------------------------------------------------------- drawing
-def new_renderer(actors, caption):
+def text_actor(text, x, y):
+    actor = vtkTextActor()
+    actor.SetInput(text)
+    actor.SetPosition(x, y)
+    actor.GetTextProperty().SetColor(*TEXT)
+    actor.GetTextProperty().SetFontSize(22)
+    return actor
+
+
+def new_renderer(actors):
     renderer = vtkRenderer()
     renderer.SetBackground(*BACKGROUND)
     for actor in actors:
         renderer.AddActor(actor)
-    if caption:
-        text = vtkTextActor()
-        text.SetInput(caption)
-        text.SetPosition(24, 20)
-        text.GetTextProperty().SetColor(*TEXT)
-        text.GetTextProperty().SetFontSize(22)
-        renderer.AddActor(text)
     return renderer
 
 
-def frame(renderer, bounds, direction, up, zoom):
+def aim(renderer, points, direction, up):
+    """Points the camera along the direction at the points, as near as the picture's frame allows."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    middle = (low + high) / 2
     camera = renderer.GetActiveCamera()
-    middle = [(bounds[2 * a] + bounds[2 * a + 1]) / 2 for a in range(3)]
     camera.SetFocalPoint(*middle)
-    camera.SetPosition(*(m + d for m, d in zip(middle, direction)))
+    camera.SetPosition(*(middle + direction))
     camera.SetViewUp(*up)
-    renderer.ResetCamera(bounds)
-    if camera.GetParallelProjection():
-        sides = sorted((bounds[2 * a + 1] - bounds[2 * a] for a in range(3)), reverse=True)
-        camera.SetParallelScale(0.53 * max(sides[1], sides[0] * SIZE[1] / SIZE[0]))
-    camera.Zoom(zoom)
+    renderer.ResetCamera([side for sides in zip(low, high) for side in sides])
+    homogeneous = numpy.column_stack([points, numpy.ones(len(points))])
+    for _ in range(3):  # centring and zooming change each other a little
+        matrix = camera.GetCompositeProjectionTransformMatrix(SIZE[0] / SIZE[1], -1, 1)
+        view = homogeneous @ numpy.array([[matrix.GetElement(i, j) for j in range(4)] for i in (0, 1, 3)]).T
+        view = view[:, :2] / view[:, 2:]
+        low, high = view.min(axis=0), view.max(axis=0)
+        centre = numpy.array(camera.GetWindowCenter()) + (low + high) / 2
+        camera.SetWindowCenter(*centre)
+        camera.Zoom(0.93 / ((high - low) / 2).max())
     renderer.ResetCameraClippingRange()
 
 
-def save(renderer, path):
+def save(renderer, points, direction, up, path):
     window = vtkRenderWindow()
     window.SetOffScreenRendering(1)
     window.SetMultiSamples(8)
     window.SetSize(*SIZE)
     window.AddRenderer(renderer)
+    aim(renderer, points, direction, up)
     window.Render()
     image = vtkWindowToImageFilter()
     image.SetInput(window)

@@ -135,6 +135,27 @@ std::vector<Id> besideSmallerCut(const OctreeBuilder& builder, int cells) {
   return chosen;
 }
 
+// A cell the surface crosses, most of whose neighbours on the surface are smaller, becomes as small: coarse islands
+// in a fine front are what the projection cannot straighten.
+std::vector<Id> amongSmallerCut(const OctreeBuilder& builder) {
+  std::vector<std::uint8_t> split(builder.size(), 0);
+  tbb::parallel_for(Id(0), builder.size(), [&](Id i) {
+    const auto& n = builder.node(i);
+    if (!n.isLeaf() || !n.isCut() || n.level == builder.brick().maxLevel) return;
+    int smaller = 0, others = 0;
+    for (int k = 0; k < 27; ++k) {
+      const Id other = k == 13 ? kNone : builder.neighbour(n, {k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1});
+      if (other == kNone || !builder.node(other).isCut()) continue;
+      ++(builder.node(other).isLeaf() ? others : smaller);
+    }
+    split[i] = smaller > others;
+  });
+  std::vector<Id> chosen;
+  for (Id i = 0; i < builder.size(); ++i)
+    if (split[i]) chosen.push_back(i);
+  return chosen;
+}
+
 }  // namespace
 
 Octree decompose(const SurfaceModel& model, const OctreeDecomposeOptions& options, Monitor& monitor) {
@@ -146,9 +167,10 @@ Octree decompose(const SurfaceModel& model, const OctreeDecomposeOptions& option
   for (;;) {
     monitor.check(0.85, "balancing");
     builder.balance(options.cellsBetweenLevels);
-    const std::vector<Id> beside = besideSmallerCut(builder, options.bufferCells);
-    if (beside.empty()) break;
-    splitWithinBudget(builder, beside, options);
+    std::vector<Id> more = amongSmallerCut(builder);
+    if (more.empty()) more = besideSmallerCut(builder, options.bufferCells);
+    if (more.empty()) break;
+    splitWithinBudget(builder, more, options);
   }
   monitor.check(0.95, "collecting leaves");
   return builder.finish();

@@ -98,6 +98,8 @@ RefinementCriteria::Summary RefinementCriteria::look(const OctreeBuilder& builde
   }
   s.centre /= double(count);
   if (s.normal.norm() > 0) s.normal.normalize();
+  s.normalCount = static_cast<int>(std::min<std::size_t>(count, Summary::kNormals));
+  for (int i = 0; i < s.normalCount; ++i) s.normals[i] = normal[i * count / s.normalCount];
   // Criterion 1: a spread of normalAngle is half of it to either side of the mean.
   if (options_.normalAngle > 0)
     for (std::size_t i = 0; i < count && !s.split; ++i) s.split = std::abs(normal[i].dot(s.normal)) < cosHalfNormal_;
@@ -110,7 +112,10 @@ RefinementCriteria::Summary RefinementCriteria::look(const OctreeBuilder& builde
 
 // Criteria 2 and 4 for two adjacent cells, each with a single piece of surface (else they would split by 1 or 3).
 bool RefinementCriteria::disagree(const Summary& a, const Summary& b) const {
-  if (options_.normalAngle > 0 && std::abs(a.normal.dot(b.normal)) < cosNormal_) return true;
+  if (options_.normalAngle > 0)
+    for (int i = 0; i < a.normalCount; ++i)
+      for (int j = 0; j < b.normalCount; ++j)
+        if (std::abs(a.normals[i].dot(b.normals[j])) < cosNormal_) return true;
   return options_.separate && facing(a.normal, b.normal, b.centre - a.centre);
 }
 

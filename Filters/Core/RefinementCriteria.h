@@ -2,6 +2,7 @@
 // Which octree cells the geometry asks to split: criteria 1-5 and 9 of thesis 3.4.4.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "FeatureEdges.h"
@@ -20,8 +21,11 @@ class RefinementCriteria {
  private:
   /// What the surface is like inside one cell.
   struct Summary {
+    static constexpr int kNormals = 8;
     Vec3 normal = Vec3::Zero();  ///< mean of the normals, signs aligned
     Vec3 centre = Vec3::Zero();  ///< mean of the cut figures' centres
+    std::array<Vec3, kNormals> normals;  ///< an even sample of the normals
+    int normalCount = 0;
     bool split = false, cut = false;
   };
   bool sizeAsksFor(const OctreeBuilder& builder, const OctreeBuilder::Node& n) const;
