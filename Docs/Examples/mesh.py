@@ -248,6 +248,8 @@ def mesh_geometry(pm, runner, options, geometry):
     filters = make_filters(pm, options)
     grid = None
     for name, stage in zip(STAGES, filters):
+        if name == "ResolveFeatures":  # gaps that the octree has sealed are seams
+            stage.SetGapTolerance(0.5 * grid.GetFieldData().GetArray("FinestSize").GetValue(0))
         inputs = [data for data in (grid, geometry) if data is not None]
         for port in range(stage.GetNumberOfInputPorts()):
             stage.SetInputDataObject(port, inputs[port])

@@ -177,8 +177,8 @@ def surface(shown, names, patches, path):
     actor.GetProperty().EdgeVisibilityOn()
     actor.GetProperty().SetEdgeColor(*LINES)
     actor.GetProperty().SetInterpolationToFlat()
-    actor.GetProperty().SetAmbient(0.25)
-    actor.GetProperty().SetDiffuse(0.75)
+    actor.GetProperty().SetAmbient(0.4)
+    actor.GetProperty().SetDiffuse(0.6)
     labels = legend(names, patches, table) if len(patches) <= 20 else []
     renderer = new_renderer([actor] + labels)
     points = vtk_to_numpy(shown.GetPoints().GetData())

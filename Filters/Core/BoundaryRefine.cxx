@@ -115,9 +115,26 @@ std::vector<Id> grade(LayerColumns& columns, std::vector<Id> changed) {
   return changed;
 }
 
+/// checkMesh fails cells of an aspect ratio above 1000, which thin layers on large faces may reach.
+void warnOfAspect(const PolyMesh& mesh, const LayerColumns& columns, const std::vector<double>& first,
+                  Monitor& monitor) {
+  constexpr double kMostAspect = 1000;
+  double widest = 0;
+  for (Id c = 0; c < columns.count(); ++c) {
+    if (columns.layers(c) == 1) continue;
+    const double area = measureFace(mesh.points, mesh.faces[columns.wallFace(c)], true).normal.norm();
+    for (Id b : columns.ring(c)) widest = std::max(widest, std::sqrt(area) / first[b]);
+  }
+  if (widest <= kMostAspect) return;
+  monitor.warning(
+      fmt::format("Cells at the wall are up to {:.0f} times as wide as high; OpenFOAM's checkMesh "
+                  "complains above {:.0f}. Use smaller cells at the wall or a larger first height.",
+                  widest, kMostAspect));
+}
+
 /// The layers wished for, as far as they fit, graded; and the points for them behind the mesh's own.
 std::vector<Vec3> planLayers(const PolyMesh& mesh, LayerColumns& columns,
-                             const BoundaryRefineOptions& options) {
+                             const BoundaryRefineOptions& options, Monitor& monitor) {
   const std::vector<double> sums = unitHeights(options);
   const std::vector<double> first = firstLengths(mesh, columns, options, sums);
   std::vector<Id> all(columns.count());
@@ -132,6 +149,7 @@ std::vector<Vec3> planLayers(const PolyMesh& mesh, LayerColumns& columns,
   }
   grade(columns, all);
   columns.updateEdges(all);
+  warnOfAspect(mesh, columns, first, monitor);
   const Id oldPoints = static_cast<Id>(mesh.points.size());
   std::vector<Vec3> points = mesh.points;
   points.resize(columns.numberPoints(oldPoints));
@@ -335,7 +353,7 @@ PolyMesh boundaryRefine(const PolyMesh& mesh, const BoundaryRefineOptions& optio
   checkOptions(mesh, options);
   monitor.check(0, "finding prisms");
   LayerColumns columns(mesh);
-  const std::vector<Vec3> points = planLayers(mesh, columns, options);
+  const std::vector<Vec3> points = planLayers(mesh, columns, options, monitor);
   lowerUntilValid(mesh, columns, points, options.limits, monitor);
   if (report) *report = countLayers(mesh, columns, options.layers);
   monitor.check(0.7, "splitting prisms");

@@ -14,6 +14,7 @@ constexpr double kLength = 0.05;
 constexpr double kGap = 5.0;
 constexpr double kEnterGap = 2.0;
 constexpr double kBack = 2.0;          // for each length an edge runs against the curve
+constexpr double kOnCurve = 2e-3;      // scales from the curve that count as on it
 constexpr double kLargestBack = 0.35;  // scales an edge may run against the curve at most
 
 }  // namespace
@@ -116,7 +117,7 @@ std::vector<std::vector<PathNode>> CurveTracer::unwind(const Task&) const {
     }
     if (!open) pieces.emplace_back();
     open = true;
-    pieces.back().push_back({vertices_[v].row, vertices_[v].arc});
+    pieces.back().push_back({vertices_[v].row, vertices_[v].arc, vertices_[v].distance < kOnCurve});
   }
   for (auto& piece : pieces) std::reverse(piece.begin(), piece.end());
   std::reverse(pieces.begin(), pieces.end());

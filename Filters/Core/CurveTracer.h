@@ -17,6 +17,7 @@ struct NearNode {
 struct PathNode {
   Id row = kNone;
   double arc = 0;
+  bool onCurve = false;  ///< lies on the curve already
 };
 
 /// Dijkstra over the nodes near a curve and, beside them, a chain of the same arc positions: moving along the

@@ -279,7 +279,8 @@ CurveTracer::Task PathFinder::makeTask(Id curve, double scale) const {
   return task;
 }
 
-/// Arc lengths of a piece's nodes: their own, evened out, apart by a least spacing, between the ends.
+/// Arc lengths of a piece's nodes: their own, evened out, apart by a least spacing, between the ends. Nodes
+/// that lie on the curve already stay where they are unless two nearly touch.
 std::vector<double> PathFinder::spread(const std::vector<PathNode>& piece, double scale, bool firstFixed,
                                        bool lastFixed) const {
   const std::size_t n = piece.size();
@@ -288,20 +289,24 @@ std::vector<double> PathFinder::spread(const std::vector<PathNode>& piece, doubl
   const double room = s[n - 1] - s[0];
   for (int sweep = 0; sweep < 2; ++sweep) {
     next = s;
-    for (std::size_t i = 1; i + 1 < n; ++i) next[i] = 0.5 * s[i] + 0.25 * (s[i - 1] + s[i + 1]);
+    for (std::size_t i = 1; i + 1 < n; ++i)
+      if (!piece[i].onCurve) next[i] = 0.5 * s[i] + 0.25 * (s[i - 1] + s[i + 1]);
     s = next;
   }
-  const double gap =
+  const double wide =
       std::min(options_.spacing * scale, 0.6 * std::max(0.0, room) / static_cast<double>(n - 1));
-  // Forward and backward sweeps both respect the ends; their mean keeps every gap.
+  std::vector<double> place(n, 0.0);  // least arc length from the first node
+  for (std::size_t i = 1; i < n; ++i)
+    place[i] = place[i - 1] + (piece[i - 1].onCurve && piece[i].onCurve ? 0.3 * wide : wide);
+  // Forward and backward sweeps both keep the spacing; so does their mean.
   std::vector<double> up = s, down = s;
-  for (std::size_t i = 1; i < n; ++i) up[i] = std::max(s[i], up[i - 1] + gap);
-  for (std::size_t i = n - 1; i-- > 0;) down[i] = std::min(s[i], down[i + 1] - gap);
+  for (std::size_t i = 1; i < n; ++i) up[i] = std::max(s[i], up[i - 1] + place[i] - place[i - 1]);
+  for (std::size_t i = n - 1; i-- > 0;) down[i] = std::min(s[i], down[i + 1] - (place[i + 1] - place[i]));
   for (std::size_t i = 0; i < n; ++i) s[i] = 0.5 * (up[i] + down[i]);
   const double lo = piece[0].arc, hi = piece[n - 1].arc;
   for (std::size_t i = 0; i < n; ++i) {
-    if (firstFixed) s[i] = std::max(s[i], lo + static_cast<double>(i) * gap);
-    if (lastFixed) s[i] = std::min(s[i], hi - static_cast<double>(n - 1 - i) * gap);
+    if (firstFixed) s[i] = std::max(s[i], lo + place[i]);
+    if (lastFixed) s[i] = std::min(s[i], hi - (place[n - 1] - place[i]));
   }
   return s;
 }

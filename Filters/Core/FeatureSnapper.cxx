@@ -12,6 +12,7 @@ constexpr int kDistanceGroups = 4;  // eq 4-31
 constexpr double kReached = 1e-3;   // length scales
 constexpr double kSnapTolerance =
     0.1;  // length scales a face may leave the geometry by when a node reaches a feature
+constexpr double kCrowded = 0.2;  // length scales between nodes of a path
 constexpr double kSmoothTolerance = 0.02;
 
 }  // namespace
@@ -20,6 +21,10 @@ FeatureSnapper::FeatureSnapper(NodeMover& mover, const WallSurface& wall, const 
                                const FeatureGraph& graph)
     : mover_(mover), mesh_(mover.mesh()), wall_(wall), field_(field), graph_(graph) {
   height_.resize(wall.nodes.size());
+  changed_.assign(mesh_.points.size(), 1);
+  innerTried_.assign(mesh_.points.size(), 0);
+  smoothTried_.assign(wall.nodes.size(), 0);
+  settleTried_ = smoothTried_;
   isBase_.assign(mesh_.points.size(), 0);
   for (Id row = 0; row < wall.size(); ++row) {
     const Id p = wall.nodes[row], b = mesh_.base[p];
@@ -34,6 +39,7 @@ void FeatureSnapper::setTargets(const FeaturePaths& paths) {
   target_.assign(n, Vec3::Zero());
   curve_.assign(n, kNone);
   before_.assign(n, kNone);
+  snapTried_.assign(n, 0);
   after_.assign(n, kNone);
   for (const NodeTarget& t : paths.targets) {
     const Id row = wall_.rowOf[t.node];
@@ -96,6 +102,28 @@ void FeatureSnapper::forEachRow(const std::vector<std::vector<Id>>& groups, cons
   mover_.forEach(groups, [&](Id point) { body(wall_.rowOf[point]); });
 }
 
+/// Has anything in the columns at and around a row moved since the last attempt? Notes a new attempt if so.
+bool FeatureSnapper::stirred(Id row, std::vector<Id>& tried) {
+  const auto column = [&](Id r) {
+    const Id p = wall_.nodes[r], b = mesh_.base[p];
+    return std::max(changed_[p], b == kNone ? 0 : changed_[b]);
+  };
+  Id last = column(row);
+  for (Id n : wall_.neighbours[row]) last = std::max(last, column(n));
+  if (last < tried[row]) return false;
+  tried[row] = pass_;
+  return true;
+}
+
+bool FeatureSnapper::stirredBelow(Id point) {
+  Id last = 0;
+  for (Id f : mover_.facesOf(point))
+    for (Id p : mesh_.faces[f]) last = std::max(last, changed_[p]);
+  if (last < innerTried_[point]) return false;
+  innerTried_[point] = pass_;
+  return true;
+}
+
 double FeatureSnapper::distance(Id row) const {
   return (target_[row] - mesh_.points[wall_.nodes[row]]).norm() / wall_.scale[row];
 }
@@ -123,12 +151,27 @@ void FeatureSnapper::snap(bool corners) {
     const int g = static_cast<int>(distance(row) / farthest * kDistanceGroups);
     groups[std::min(g, kDistanceGroups - 1)].push_back(row);
   }
-  for (const std::vector<Id>& group : groups) forEachRow(columnGroups(group), [&](Id row) { snapNode(row); });
+  for (const std::vector<Id>& group : groups) {
+    ++pass_;
+    forEachRow(columnGroups(group), [&](Id row) {
+      if (stirred(row, snapTried_)) snapNode(row);
+    });
+  }
 }
 
+/// The target, else another point of the curve between the neighbours on the path, else part of the way.
 void FeatureSnapper::snapNode(Id row) {
   const Vec3 from = mesh_.points[wall_.nodes[row]];
   if (tryMove(row, target_[row], kSnapTolerance)) return;
+  if (role_[row] == Role::Curve) {
+    for (double part : {0.0, 0.5}) {
+      const ClosestOnFeature on = graph_.closestOnCurve(from + part * (target_[row] - from), curve_[row]);
+      if (on.segment == kNone || crowdsPath(row, on.point) || !tryMove(row, on.point, kSnapTolerance))
+        continue;
+      target_[row] = on.point;
+      return;
+    }
+  }
   for (double part : {0.5, 0.25}) {
     const Vec3 between = field_.closest(from + part * (target_[row] - from)).point;
     if ((between - target_[row]).norm() < (from - target_[row]).norm() &&
@@ -137,16 +180,31 @@ void FeatureSnapper::snapNode(Id row) {
   }
 }
 
+/// Would the node come too near to its neighbours on the path?
+bool FeatureSnapper::crowdsPath(Id row, const Vec3& at) const {
+  for (Id n : {before_[row], after_[row]})
+    if (n != kNone && (target_[n] - at).norm() < kCrowded * wall_.scale[row]) return true;
+  return false;
+}
+
 /// Moves a wall node and, as far as it helps, the lower end of its prism edge.
 bool FeatureSnapper::tryMove(Id row, const Vec3& to, double tolerance) {
   const Id p = wall_.nodes[row], b = mesh_.base[p];
   const Vec3 from = mesh_.points[p];
   if (deviation(row, to) > std::max(deviation(row, from), tolerance * wall_.scale[row])) return false;
-  if (b == kNone) return mover_.move(p, to);
-  const Vec3 low = mesh_.points[b];
-  for (double part : {0.5, 1.0})
-    if (mover_.moveTogether({p, b}, {to, low + part * (to - from)})) return true;
-  return mover_.move(p, to);
+  bool kept = false;
+  if (b != kNone) {
+    const Vec3 low = mesh_.points[b];
+    for (double part : {0.5, 1.0}) {
+      kept = mover_.moveTogether({p, b}, {to, low + part * (to - from)});
+      if (!kept) continue;
+      changed_[b] = pass_;
+      break;
+    }
+  }
+  kept = kept || mover_.move(p, to);
+  if (kept) changed_[p] = pass_;
+  return kept;
 }
 
 /// Largest distance to the geometry of the representative points that follow the node, were it there.
@@ -213,7 +271,9 @@ void FeatureSnapper::slideOnCurve(Id row) {
   const double limit = kSmoothTolerance * wall_.scale[row];
   if (on.segment == kNone || (on.point - mesh_.points[p]).norm() < 0.5 * limit) return;
   if (deviation(row, on.point) > std::max(deviation(row, mesh_.points[p]), limit)) return;
-  if (mover_.improve(p, on.point)) target_[row] = mesh_.points[p];
+  if (!mover_.improve(p, on.point)) return;
+  target_[row] = mesh_.points[p];
+  changed_[p] = pass_;
 }
 
 /// Lower end of a prism edge: below its wall node along the wall's normal at the old height, evened out
@@ -225,29 +285,42 @@ void FeatureSnapper::settleBase(Id row, bool onlyBetter) {
   const Vec3 ideal = 0.7 * upright + 0.3 * neighbourMean(b);
   const Vec3 to = 0.5 * (mesh_.points[b] + ideal);
   if ((to - mesh_.points[b]).norm() < 0.01 * height_[row]) return;
-  if (onlyBetter)
-    mover_.improve(b, to);
-  else
-    mover_.drift(b, to, 1);
+  if (onlyBetter ? mover_.improve(b, to) : mover_.drift(b, to, 1) > 0) changed_[b] = pass_;
+}
+
+/// Volume smoothing (4.5.1) of the points below the columns.
+void FeatureSnapper::smoothInner() {
+  ++pass_;
+  mover_.forEach(inner_, [&](Id p) {
+    if (!stirredBelow(p)) return;
+    const Vec3 to = 0.5 * (mesh_.points[p] + neighbourMean(p));
+    if (mover_.improve(p, to)) changed_[p] = pass_;
+  });
 }
 
 void FeatureSnapper::relax() {
-  forEachRow(active_, [&](Id row) { settleBase(row, false); });
+  ++pass_;
   forEachRow(active_, [&](Id row) {
-    if (role_[row] == Role::Free) smoothWallNode(row, false);
+    if (stirred(row, settleTried_)) settleBase(row, false);
   });
-  mover_.forEach(inner_, [&](Id p) { mover_.improve(p, 0.5 * (mesh_.points[p] + neighbourMean(p))); });
+  ++pass_;
+  forEachRow(active_, [&](Id row) {
+    if (role_[row] == Role::Free && stirred(row, smoothTried_)) smoothWallNode(row, false);
+  });
+  smoothInner();
 }
 
 void FeatureSnapper::polish() {
+  ++pass_;
   forEachRow(active_, [&](Id row) {
     if (role_[row] == Role::Free)
       smoothWallNode(row, true);
     else if (role_[row] == Role::Curve)
       slideOnCurve(row);
   });
+  ++pass_;
   forEachRow(active_, [&](Id row) { settleBase(row, true); });
-  mover_.forEach(inner_, [&](Id p) { mover_.improve(p, 0.5 * (mesh_.points[p] + neighbourMean(p))); });
+  smoothInner();
 }
 
 }  // namespace pm

@@ -36,6 +36,7 @@ class FeatureSnapper {
   bool reached(Id row) const;
   double distance(Id row) const;
   void snapNode(Id row);
+  bool crowdsPath(Id row, const Vec3& at) const;
   bool tryMove(Id row, const Vec3& to, double tolerance);
   double deviation(Id row, const Vec3& at) const;
   Vec3 wallNormal(Id row) const;
@@ -45,6 +46,9 @@ class FeatureSnapper {
   void settleBase(Id row, bool onlyBetter);
   void findActive();
   std::vector<std::vector<Id>> columnGroups(const std::vector<Id>& rows) const;
+  bool stirred(Id row, std::vector<Id>& tried);
+  bool stirredBelow(Id point);
+  void smoothInner();
   template <class Body>
   void forEachRow(const std::vector<std::vector<Id>>& groups, const Body& body);
 
@@ -53,12 +57,16 @@ class FeatureSnapper {
   const WallSurface& wall_;
   const DistanceField& field_;
   const FeatureGraph& graph_;
-  std::vector<double> height_;           // #W length of the prism edge at the start
-  std::vector<char> isBase_;             // #P lower end of a prism edge
-  std::vector<Role> role_;               // #W
-  std::vector<Vec3> target_;             // #W
-  std::vector<Id> curve_;                // #W
-  std::vector<Id> before_, after_;       // #W neighbours on the path, kNone at its ends
+  std::vector<double> height_;      // #W length of the prism edge at the start
+  std::vector<char> isBase_;        // #P lower end of a prism edge
+  std::vector<Role> role_;          // #W
+  std::vector<Vec3> target_;        // #W
+  std::vector<Id> curve_;           // #W
+  std::vector<Id> before_, after_;  // #W neighbours on the path, kNone at its ends
+  Id pass_ = 1;                     // counts sweeps over rows or points
+  std::vector<Id> changed_;         // #P pass in which the point moved last
+  std::vector<Id> snapTried_, smoothTried_, settleTried_,
+      innerTried_;                       // #W, #W, #W, #P pass of the last attempt
   std::vector<std::vector<Id>> active_;  // groups of wall nodes around targets
   std::vector<std::vector<Id>> inner_;   // groups of points below them
 };

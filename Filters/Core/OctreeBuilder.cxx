@@ -112,24 +112,42 @@ void OctreeBuilder::split(const std::vector<Id>& leaves) {
   });
 }
 
-std::vector<Id> OctreeBuilder::tooCoarse(const std::vector<Id>& changed, int cells) const {
-  tbb::enumerable_thread_specific<std::vector<Id>> found;
+OctreeBuilder::Grading OctreeBuilder::tooCoarse(const std::vector<Id>& changed, int cells) const {
+  tbb::enumerable_thread_specific<Grading> found;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, changed.size(), 64), [&](const auto& range) {
-    auto& mine = found.local();
+    Grading& mine = found.local();
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       const Node& n = nodes_[changed[i]];
-      for (int z = -cells; z <= cells; ++z)
-        for (int y = -cells; y <= cells; ++y)
-          for (int x = -cells; x <= cells; ++x) {
-            const Id other = neighbour(n, {x, y, z});
-            if (other != kNone && nodes_[other].level < n.level) mine.push_back(other);
+      if (n.level == 0) continue;
+      // Cells of n's level exist where their parents are split, so the parents within reach are looked at.
+      const int up = brick_.maxLevel - n.level + 1, own = up - 1;
+      const Coord c = decode(n.key);
+      Coord lo, hi;
+      for (int a = 0; a < 3; ++a) {
+        lo[a] = ((c[a] >> own) - cells) >> 1;
+        hi[a] = ((c[a] >> own) + cells) >> 1;
+      }
+      bool again = false;
+      for (int z = lo[2]; z <= hi[2]; ++z)
+        for (int y = lo[1]; y <= hi[1]; ++y)
+          for (int x = lo[0]; x <= hi[0]; ++x) {
+            const Id parent = find({x * (1 << up), y * (1 << up), z * (1 << up)}, n.level - 1);
+            if (parent == kNone || !nodes_[parent].isLeaf()) continue;
+            mine.leaves.push_back(parent);
+            again = again || nodes_[parent].level + 1 < n.level;
           }
+      if (again) mine.unsettled.push_back(changed[i]);
     }
   });
-  std::vector<Id> all;
-  for (const auto& mine : found) all.insert(all.end(), mine.begin(), mine.end());
-  tbb::parallel_sort(all.begin(), all.end());
-  all.erase(std::unique(all.begin(), all.end()), all.end());
+  Grading all;
+  for (const Grading& mine : found) {
+    all.leaves.insert(all.leaves.end(), mine.leaves.begin(), mine.leaves.end());
+    all.unsettled.insert(all.unsettled.end(), mine.unsettled.begin(), mine.unsettled.end());
+  }
+  for (auto* list : {&all.leaves, &all.unsettled}) {
+    tbb::parallel_sort(list->begin(), list->end());
+    list->erase(std::unique(list->begin(), list->end()), list->end());
+  }
   return all;
 }
 
@@ -138,10 +156,11 @@ void OctreeBuilder::balance(int cells) {
   for (Id i = 0; i < size(); ++i)
     if (!nodes_[i].isLeaf()) changed.push_back(i);
   for (;;) {
-    const std::vector<Id> coarse = tooCoarse(changed, cells);
-    if (coarse.empty()) return;
-    split(coarse);
-    changed.insert(changed.end(), coarse.begin(), coarse.end());
+    const Grading grading = tooCoarse(changed, cells);
+    if (grading.leaves.empty()) return;
+    split(grading.leaves);
+    changed = grading.unsettled;
+    changed.insert(changed.end(), grading.leaves.begin(), grading.leaves.end());
   }
 }
 

@@ -47,7 +47,11 @@ class OctreeBuilder {
   Octree finish() const;
 
  private:
-  std::vector<Id> tooCoarse(const std::vector<Id>& changed, int cells) const;
+  /// What the grading asks for: leaves to split, and nodes to look at again because a leaf was more than one level off.
+  struct Grading {
+    std::vector<Id> leaves, unsettled;
+  };
+  Grading tooCoarse(const std::vector<Id>& changed, int cells) const;
 
   const SurfaceModel& model_;
   Brick brick_;

@@ -18,6 +18,9 @@ constexpr double kDegrees = 180 / 3.14159265358979323846;
 // A triangle that shares a point with the edge is near it there in any case; beside the edge it counts only
 // within this part of the distance to the shared point.
 constexpr double kSharedPointSlope = 0.1;
+// Of the gap tolerance: pieces of split links are not shorter, so that lines do not zigzag between two
+// borders.
+constexpr double kShortestStep = 0.25;
 
 bool planesDiffer(const SurfaceModel& model, Id s, Id t, double degrees) {
   const Vec3& m = model.normal(s);
@@ -75,9 +78,10 @@ class Welder {
     for (const OpenEdge& e : open) loose.push_back({e.a, e.b, kOpenEdge});
     if (tolerance2_ > 0) {
       joinPoints(loose);
-      std::vector<FeatureNetwork::Link> firm = splitFirm(loose);
       loose = split(loose);
-      network_.links = std::move(firm);
+      const Bvh firm = bvhOver(network_.links);
+      dropCovered(loose, firm);
+      splitFirm(loose, firm);
     }
     network_.links.insert(network_.links.end(), loose.begin(), loose.end());
     unify();
@@ -94,6 +98,15 @@ class Welder {
     return ids;
   }
 
+  Bvh bvhOver(const Links& links) const {
+    std::vector<Box> boxes(links.size());
+    for (std::size_t i = 0; i < links.size(); ++i) {
+      boxes[i].add(at(links[i].a));
+      boxes[i].add(at(links[i].b));
+    }
+    return Bvh(boxes);
+  }
+
   Bvh bvhOver(const std::vector<Id>& points) const {
     std::vector<Box> boxes;
     for (Id p : points) boxes.push_back(boxOf(at(p)));
@@ -102,27 +115,23 @@ class Welder {
 
   const Vec3& at(Id p) const { return network_.points[p]; }
 
-  /// Loose points follow the first point within the tolerance that stays: those of links already there, then
-  /// by id.
+  /// Loose points follow the nearest point of the links already there when it is within the tolerance, others
+  /// the first loose point (by id) that stays.
   void joinPoints(Links& loose) {
-    const std::vector<Id> points = pointsOf(loose);
-    const Bvh bvh = bvhOver(points);
+    const std::vector<Id> points = pointsOf(loose), firmPoints = pointsOf(network_.links);
+    const Bvh bvh = bvhOver(points), firmBvh = bvhOver(firmPoints);
     std::vector<Id> target(points.size(), kNone);
-    const auto gather = [&](Id p) {
-      bvh.nearest(
-          at(p), [&] { return tolerance2_; },
-          [&](Id slot) {
-            const Id q = bvh.order()[slot];
-            if (target[q] == kNone && !firm_[points[q]] &&
-                (at(points[q]) - at(p)).squaredNorm() <= tolerance2_)
-              target[q] = p;
-          });
-    };
-    for (Id p : pointsOf(network_.links)) gather(p);
+    tbb::parallel_for(std::size_t(0), points.size(),
+                      [&](std::size_t i) { target[i] = nearestWithin(firmBvh, firmPoints, at(points[i])); });
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (target[i] != kNone) continue;
-      target[i] = points[i];
-      if (!firm_[points[i]]) gather(points[i]);
+      const Vec3& p = at(points[i]);
+      const auto gather = [&](Id slot) {
+        const Id q = bvh.order()[slot];
+        if (target[q] == kNone && (at(points[q]) - p).squaredNorm() <= tolerance2_) target[q] = points[i];
+      };
+      bvh.nearest(
+          p, [&] { return tolerance2_; }, gather);
     }
     const auto resolve = [&](Id p) {
       return target[std::lower_bound(points.begin(), points.end(), p) - points.begin()];
@@ -136,68 +145,111 @@ class Welder {
                 loose.end());
   }
 
-  /// Loose points beside a firm link move onto it and split it. Returns the firm links after that.
-  Links splitFirm(const Links& loose) {
-    const Links& links = network_.links;
-    std::vector<Box> boxes(links.size());
-    for (std::size_t i = 0; i < links.size(); ++i) {
-      boxes[i].add(at(links[i].a));
-      boxes[i].add(at(links[i].b));
-    }
-    const Bvh bvh(boxes);
-    std::vector<std::pair<Id, Id>> splits;  // (link, point)
-    for (Id p : pointsOf(loose)) {
-      if (firm_[p]) continue;
-      Foot best;
-      bvh.nearest(
-          at(p), [&] { return std::min(tolerance2_, best.distance2); },
-          [&](Id slot) {
-            Foot found;
-            found.link = bvh.order()[slot];
-            closestOnEdge(at(p), at(links[found.link].a), at(links[found.link].b), found);
-            if (found.distance2 < best.distance2 ||
-                (found.distance2 == best.distance2 && found.link < best.link))
-              best = found;
-          });
-      if (best.link == kNone || best.distance2 > tolerance2_) continue;
-      network_.points[p] = best.point;
-      splits.push_back({best.link, p});
-    }
-    std::sort(splits.begin(), splits.end());
-    Links out;
-    auto next = splits.begin();
-    for (Id i = 0; i < static_cast<Id>(links.size()); ++i) {
-      std::vector<Id> on;
-      for (; next != splits.end() && next->first == i; ++next) on.push_back(next->second);
-      appendPieces(links[i], on, out);
-    }
-    return out;
+  Id nearestWithin(const Bvh& bvh, const std::vector<Id>& points, const Vec3& p) const {
+    Id best = kNone;
+    double best2 = tolerance2_;
+    const auto offer = [&](Id slot) {
+      const Id q = points[bvh.order()[slot]];
+      const double distance2 = (at(q) - p).squaredNorm();
+      if (distance2 < best2 || (distance2 == best2 && (best == kNone || q < best))) {
+        best = q;
+        best2 = distance2;
+      }
+    };
+    bvh.nearest(
+        p, [&] { return best2; }, offer);
+    return best;
   }
 
-  /// Every link split at the points within the tolerance of it.
+  /// Nearest place within the tolerance on the links that were there before.
+  Foot footOnFirm(const Bvh& bvh, const Vec3& p) const {
+    Foot best;
+    const auto offer = [&](Id slot) {
+      Foot found;
+      found.link = bvh.order()[slot];
+      closestOnEdge(p, at(network_.links[found.link].a), at(network_.links[found.link].b), found);
+      if (found.distance2 > tolerance2_) return;
+      if (found.distance2 < best.distance2 || (found.distance2 == best.distance2 && found.link < best.link))
+        best = found;
+    };
+    bvh.nearest(
+        p, [&] { return std::min(tolerance2_, best.distance2); }, offer);
+    return best;
+  }
+
+  /// Every loose link split at the loose points within the tolerance of it.
   Links split(const Links& loose) const {
-    Links all = loose;
-    all.insert(all.end(), network_.links.begin(), network_.links.end());
-    const std::vector<Id> points = pointsOf(all);
+    const std::vector<Id> points = pointsOf(loose);
     const Bvh bvh = bvhOver(points);
-    const Vec3 reach = Vec3::Constant(std::sqrt(tolerance2_));
     std::vector<std::vector<Id>> on(loose.size());
     tbb::parallel_for(std::size_t(0), loose.size(), [&](std::size_t i) {
       const auto& link = loose[i];
-      Box box = boxOf(at(link.a));
-      box.add(at(link.b));
-      box.lo -= reach;
-      box.hi += reach;
-      bvh.overlapping(box, [&](Id slot) {
+      const auto offer = [&](Id slot) {
         const Id p = points[bvh.order()[slot]];
         Foot foot;
         closestOnEdge(at(p), at(link.a), at(link.b), foot);
         if (p != link.a && p != link.b && foot.distance2 <= tolerance2_) on[i].push_back(p);
-      });
+      };
+      forBoxesAlong(link, [&](const Box& box) { bvh.overlapping(box, offer); });
+      std::sort(on[i].begin(), on[i].end());
+      on[i].erase(std::unique(on[i].begin(), on[i].end()), on[i].end());
     });
     Links out;
     for (std::size_t i = 0; i < loose.size(); ++i) appendPieces(loose[i], on[i], out);
     return out;
+  }
+
+  /// Loose links that run along links already there say nothing new.
+  void dropCovered(Links& loose, const Bvh& firm) const {
+    std::vector<std::uint8_t> covered(loose.size(), 0);
+    tbb::parallel_for(std::size_t(0), loose.size(), [&](std::size_t i) {
+      const Vec3& a = at(loose[i].a);
+      const Vec3& b = at(loose[i].b);
+      covered[i] = 1;
+      for (const double place : {0.0, 0.25, 0.5, 0.75, 1.0})
+        if (footOnFirm(firm, a + place * (b - a)).link == kNone) covered[i] = 0;
+    });
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < loose.size(); ++i)
+      if (!covered[i]) loose[kept++] = loose[i];
+    loose.resize(kept);
+  }
+
+  /// Loose points beside a link already there move onto it and split it.
+  void splitFirm(const Links& loose, const Bvh& firm) {
+    std::vector<std::pair<Id, Id>> splits;  // (link, point)
+    for (Id p : pointsOf(loose)) {
+      if (firm_[p]) continue;
+      const Foot foot = footOnFirm(firm, at(p));
+      if (foot.link == kNone) continue;
+      network_.points[p] = foot.point;
+      splits.push_back({foot.link, p});
+    }
+    std::sort(splits.begin(), splits.end());
+    Links out;
+    auto next = splits.begin();
+    for (Id i = 0; i < static_cast<Id>(network_.links.size()); ++i) {
+      std::vector<Id> on;
+      for (; next != splits.end() && next->first == i; ++next) on.push_back(next->second);
+      appendPieces(network_.links[i], on, out);
+    }
+    network_.links = std::move(out);
+  }
+
+  /// Boxes that cover all points within the tolerance of a link; small ones, for a long slanting link's own
+  /// box may hold the whole model.
+  template <class Body>
+  void forBoxesAlong(const FeatureNetwork::Link& link, const Body& body) const {
+    const double tolerance = std::sqrt(tolerance2_);
+    const Vec3 d = at(link.b) - at(link.a);
+    const int pieces = static_cast<int>(std::clamp(d.norm() / (8 * tolerance), 1.0, 64.0));
+    for (int k = 0; k < pieces; ++k) {
+      Box box = boxOf(at(link.a) + d * (double(k) / pieces));
+      box.add(at(link.a) + d * (double(k + 1) / pieces));
+      box.lo.array() -= tolerance;
+      box.hi.array() += tolerance;
+      body(box);
+    }
   }
 
   /// Pieces of a link between the given points beside it, in the order of their place along it.
@@ -208,12 +260,12 @@ class Welder {
     for (Id p : on) places.push_back({(at(p) - a).dot(d), p});
     std::sort(places.begin(), places.end());
     Id last = link.a;
-    places.push_back({0, link.b});
-    for (const auto& [place, p] : places) {
-      const auto [lo, hi] = std::minmax(last, p);
-      if (lo != hi) out.push_back({lo, hi, link.kind});
-      last = p;
-    }
+    const auto append = [&](Id next) {
+      out.push_back({std::min(last, next), std::max(last, next), link.kind});
+      last = next;
+    };
+    for (const auto& [place, p] : places) append(p);
+    append(link.b);
   }
 
   /// Each pair of points once, with the kinds of all its links.

@@ -82,14 +82,26 @@ std::vector<std::uint8_t> chooseByPoints(const Octree& tree, const std::vector<P
   return chosen;
 }
 
-std::vector<std::uint8_t> chooseOutside(const std::vector<PaintedRegion>& regions) {
+// The outside holds the domain's corners. What merely touches a side (the inside of a wheel that pokes through the
+// ground) does not count, unless the geometry covers every corner; then the largest open region is meant.
+std::vector<std::uint8_t> chooseOutside(const Octree& tree, const std::vector<PaintedRegion>& regions,
+                                        const std::vector<Id>& number) {
   std::vector<std::uint8_t> chosen(regions.size(), 0);
   bool any = false;
-  for (std::size_t r = 0; r < regions.size(); ++r)
-    any = (chosen[r] = regions[r].open) || any;
-  if (!any)
+  for (int k = 0; k < 8; ++k) {
+    Coord c;
+    for (int a = 0; a < 3; ++a) c[a] = (k >> a & 1) ? tree.brick.extent(a) - 1 : 0;
+    const Id region = number[tree.find(c)];
+    if (region != kNone) any = chosen[region] = true;
+  }
+  if (any) return chosen;
+  Id best = kNone;
+  for (Id r = 0; r < static_cast<Id>(regions.size()); ++r)
+    if (regions[r].open && (best == kNone || regions[r].volume > regions[best].volume)) best = r;
+  if (best == kNone)
     throw RegionError("Nothing reaches the sides of the domain: the geometry fills it. Give a larger domain, or mesh the "
                       "inside.");
+  chosen[best] = 1;
   return chosen;
 }
 
@@ -119,7 +131,7 @@ PolyMesh paintFront(const Octree& tree, const SurfaceModel& model, const PaintFr
   monitor.check(0, "painting");
   const std::vector<Id> number = components(tree, [&](Id leaf) { return !tree.cut[leaf]; }, r.regions);
   const std::vector<std::uint8_t> chosen = options.region == Region::Inside    ? chooseInside(tree, r.regions)
-                                           : options.region == Region::Outside ? chooseOutside(r.regions)
+                                           : options.region == Region::Outside ? chooseOutside(tree, r.regions, number)
                                                                                : chooseByPoints(tree, r.regions, number, options);
   std::vector<std::uint8_t> painted(tree.size(), 0);
   for (Id leaf = 0; leaf < tree.size(); ++leaf) painted[leaf] = number[leaf] != kNone && chosen[number[leaf]];

@@ -13,6 +13,8 @@ namespace {
 
 // A wall node this near, in units of its length scale, has arrived.
 constexpr double kArrived = 1e-4;
+// Smoothing steps below this part of the length scale are not worth their checks.
+constexpr double kSmallStep = 0.02;
 // Height of the wall prism the bases are led to, in units of the length scale: room for the layers, and near enough
 // that the octree cells below take up most of the stretch.
 constexpr double kPrismHeight = 0.4;
@@ -29,6 +31,7 @@ class Projector {
     baseGroups_ = mover_.colour(bases);
     rowOfBase_.assign(mesh.points.size(), kNone);
     for (Id row = 0; row < wall_.size(); ++row) rowOfBase_[bases[row]] = row;
+    distance_.assign(wall_.size(), 0.0);
     collectInner(bases);
   }
 
@@ -41,7 +44,7 @@ class Projector {
       drift(part);
       for (int sweep = 0; sweep < options_.smoothingSweeps; ++sweep) smoothFront(part);
       leadBases();
-      if (round % 2 == 1) smoothInner();
+      if (round % 3 == 2) smoothInner();
     }
     monitor.check(0.95, "projection");
     for (int sweep = 0; sweep < 2; ++sweep) {
@@ -67,41 +70,50 @@ class Projector {
     NodeMover::forEach(wallGroups_, [&](Id p) {
       const Vec3 x = mesh_.points[p];
       const Vec3 way = field_.closest(x).point - x;
-      if (way.norm() < kArrived * scale(p)) {
-        mover_.move(p, x + way);
+      const double distance = way.norm();
+      double& left = distance_[wall_.rowOf[p]];
+      left = distance;
+      if (distance < 1e-12 * scale(p)) return;
+      const double wanted = distance < kArrived * scale(p) ? 1 : part;
+      if (mover_.move(p, x + wanted * way)) {
+        left = (1 - wanted) * distance;
         return;
       }
-      if (mover_.drift(p, x + part * way, 1) == 1) return;
       // The prism is in the way: take its foot along.
       const Id b = mesh_.base[p];
-      if (!mover_.moveTogether({p, b}, {x + part * way, mesh_.points[b] + 0.5 * part * way}))
-        mover_.drift(p, x + part * way, 3);
+      if (mover_.moveTogether({p, b}, {x + wanted * way, mesh_.points[b] + 0.5 * wanted * way}))
+        left = (1 - wanted) * distance;
+      else
+        left = (1 - 0.5 * wanted * mover_.drift(p, x + 0.5 * wanted * way, 2)) * distance;
     });
   }
 
-  // 4.5.2: smooth in the tangent plane estimated from the mesh, then back towards the geometry.
+  // 4.5.2: smooth in the tangent plane estimated from the mesh, then back towards the geometry. A node keeps the
+  // height above the geometry it had got to; only the drift brings it nearer.
   void smoothFront(double part) {
     NodeMover::forEach(wallGroups_, [&](Id p) {
       const Id row = wall_.rowOf[p];
       const Vec3 x = mesh_.points[p];
-      Vec3 mean = Vec3::Zero();
+      Vec3 mean = Vec3::Zero(), n = Vec3::Zero();
       double weight = 0;
       for (Id f : wall_.faces[row]) {  // area-weighted face centres: independent of hanging nodes on the edges
         const double area = mover_.faceNormal(f).norm();
         mean += area * (mover_.faceCentre(f) - x);
         weight += area;
+        n += mover_.faceNormal(f);
       }
-      if (!(weight > 0)) return;
+      if (!(weight > 0) || !(n.norm() > 0)) return;
+      n.normalize();
       mean /= weight;
-      const Vec3 n = normalAt(p);
-      const Vec3 tangential = mean - mean.dot(n) * n;
-      const Vec3 moved = x + 0.5 * tangential;
-      const Vec3 onto = field_.closest(moved).point;
-      // Keep the height above the geometry the node had got to; only the drift brings it nearer.
-      const double now = std::sqrt(field_.closest(x).distance2);
-      const double then = (onto - moved).norm();
-      const Vec3 target = then > 0 && part == 1 ? Vec3(moved + (onto - moved) * std::max(0.0, 1 - now / then)) : moved;
-      mover_.drift(p, part == 1 ? target : moved, 1);
+      const Vec3 step = 0.5 * (mean - mean.dot(n) * n);
+      if (step.norm() < kSmallStep * wall_.scale[row]) return;
+      Vec3 target = x + step;
+      if (part == 1) {
+        const Vec3 back = field_.closest(target).point - target;
+        const double height = back.norm();
+        if (height > distance_[row]) target += back * (1 - distance_[row] / height);
+      }
+      mover_.drift(p, target, 1);
     });
   }
 
@@ -122,7 +134,8 @@ class Projector {
     }
     NodeMover::forEach(baseGroups_, [&](Id b) {
       const Id row = rowOfBase_[b];
-      mover_.drift(b, mesh_.points[b] + 0.5 * (mesh_.points[wall_.nodes[row]] + ideal[row] - mesh_.points[b]), 1);
+      const Vec3 step = 0.5 * (mesh_.points[wall_.nodes[row]] + ideal[row] - mesh_.points[b]);
+      if (step.norm() > kSmallStep * wall_.scale[row]) mover_.drift(b, mesh_.points[b] + step, 1);
     });
   }
 
@@ -131,7 +144,8 @@ class Projector {
     NodeMover::forEach(innerGroups_, [&](Id p) {
       Vec3 mean = Vec3::Zero();
       for (Id c : mover_.cellsOf(p)) mean += mover_.cellCentre(c);
-      mover_.improve(p, 0.5 * (mesh_.points[p] + mean / double(mover_.cellsOf(p).size())));
+      const Vec3 step = 0.5 * (mean / double(mover_.cellsOf(p).size()) - mesh_.points[p]);
+      if (step.norm() > kSmallStep * mesh_.finestSize) mover_.improve(p, mesh_.points[p] + step);
     });
   }
 
@@ -165,6 +179,7 @@ class Projector {
   WallSurface wall_;
   std::vector<std::vector<Id>> wallGroups_, baseGroups_, innerGroups_;
   std::vector<Id> rowOfBase_;
+  std::vector<double> distance_;  // of each wall node to the geometry, as its last drift left it
 };
 
 }  // namespace

@@ -213,6 +213,12 @@ TEST_F(FoamWriter, FullDiskIsAnInputErrorAndKeepsTheOldMesh) {
   for (const auto& entry : fs::directory_iterator(folder_)) EXPECT_EQ(entry.path().filename(), "points");
 }
 
+TEST_F(FoamWriter, NameThatIsTakenByAFolderIsAnInputError) {
+  fs::create_directories(folder_ / "points" / "inside");
+  EXPECT_THROW(writePolyMesh(room(), folder_.string(), true, monitor_), InputError);
+  EXPECT_FALSE(fs::exists(folder_ / "faces"));
+}
+
 TEST_F(FoamWriter, AbortLeavesNothingHalfMade) {
   struct Stop : Monitor {
     int calls = 0;

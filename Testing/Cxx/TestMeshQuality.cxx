@@ -211,6 +211,22 @@ TEST(MeshQuality, FarOriginDoesNotMatter) {
   expectSame(mesh, moved, 1, 1e-7);  // coordinates themselves are rounded to 1e-9
 }
 
+TEST(MeshQuality, FarOriginCostsFacesNoDigits) {
+  // Coordinates that stay exact when shifted: only the arithmetic could lose digits.
+  PolyMesh mesh = roomWithBlock();
+  for (Vec3& p : mesh.points) p = (p * 1048576).array().round() / 1048576;
+  const Vec3 far = Vec3::Constant(8388608);
+  PolyMesh moved = mesh;
+  for (Vec3& p : moved.points) p += far;
+  for (Id f = 0; f < mesh.faceCount(); ++f) {
+    const FaceMeasures a = measureFace(mesh.points, mesh.faces[f]),
+                       b = measureFace(moved.points, moved.faces[f]);
+    ASSERT_LT((a.normal - b.normal).norm(), 1e-14);
+    ASSERT_NEAR(a.eta, b.eta, 1e-13);
+    ASSERT_LT((a.centre - (b.centre - far)).norm(), 4e-9);
+  }
+}
+
 TEST(MeshQuality, CellPointsAreTheCorners) {
   const PolyMesh mesh = roomWithBlock();
   const Csr<Id> points = cellPoints(mesh), cells = pointCells(mesh);

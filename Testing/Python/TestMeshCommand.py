@@ -82,9 +82,6 @@ class MeshCommand(unittest.TestCase):
     def test_feature_size_larger_than_the_geometry(self):
         self.refused("feature size", CLEAN, "--feature-size", "1")
 
-    def test_feature_size_beyond_the_cell_budget(self):
-        self.refused("cells", CLEAN, "--feature-size", "1e-5")
-
     def test_point_outside_the_domain(self):
         self.refused("point", CLEAN, "--feature-size", "0.005", "--point", "1", "1", "1")
 

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Painting, the permitted patterns, and the front as a mesh.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "MeshQuality.h"
+#include "OctreeDecompose.h"
+#include "PaintFront.h"
+#include "TestSurfaces.h"
+
+namespace {
+
+using namespace pm;
+using namespace pm::testing;
+
+PolyMesh paint(const SurfaceModel& model, double size, const PaintFrontOptions& front = {},
+               const OctreeDecomposeOptions& start = {}, PaintFrontReport* report = nullptr) {
+  OctreeDecomposeOptions o = start;
+  o.featureSize = size;
+  Monitor monitor;
+  return paintFront(decompose(model, o, monitor), model, front, monitor, report);
+}
+
+/// Smallest pattern among all rotations and reflections: names the class.
+unsigned patternClass(unsigned pattern) {
+  unsigned smallest = 255;
+  std::array<int, 3> axes{0, 1, 2};
+  do {
+    for (unsigned flip = 0; flip < 8; ++flip) {
+      unsigned turned = 0;
+      for (unsigned k = 0; k < 8; ++k) {
+        if (!(pattern >> k & 1)) continue;
+        unsigned m = 0;
+        for (int a = 0; a < 3; ++a) m |= ((k >> axes[a] & 1) ^ (flip >> a & 1)) << a;
+        turned |= 1u << m;
+      }
+      smallest = std::min(smallest, turned);
+    }
+  } while (std::next_permutation(axes.begin(), axes.end()));
+  return smallest;
+}
+
+TEST(FrontPatterns, OneHundredAndTwoInEightClasses) {
+  int permitted = 0;
+  std::set<unsigned> classes;
+  for (unsigned p = 0; p < 256; ++p)
+    if (isPermittedPattern(p)) {
+      ++permitted;
+      classes.insert(patternClass(p));
+    }
+  EXPECT_EQ(permitted, 102);
+  EXPECT_EQ(classes.size(), 8u);
+  EXPECT_TRUE(isPermittedPattern(0x01));
+  EXPECT_TRUE(isPermittedPattern(0x0f));
+  EXPECT_FALSE(isPermittedPattern(0x81)) << "cells that share a corner only";
+  EXPECT_FALSE(isPermittedPattern(0x09)) << "cells that share an edge only";
+  EXPECT_FALSE(isPermittedPattern(0x00));
+  EXPECT_FALSE(isPermittedPattern(0xff));
+}
+
+TEST(FrontPatterns, ClosedUnderRotationAndReflection) {
+  for (unsigned p = 1; p < 255; ++p) {
+    const unsigned c = patternClass(p);
+    EXPECT_EQ(isPermittedPattern(p), isPermittedPattern(c));
+  }
+}
+
+void expectSound(const PolyMesh& mesh) {
+  EXPECT_EQ(checkTopology(mesh), "");
+  const QualitySummary q = summarise(mesh, measure(mesh), {});
+  EXPECT_GT(q.minTet, 0);
+  EXPECT_LT(q.maxOpenness, 1e-12);
+  EXPECT_EQ(mesh.stage, Stage::Front);
+}
+
+TEST(PaintFront, InsideOfACubeHasItsVolumeLessTheRim) {
+  const auto model = cube(1, true).model();
+  PaintFrontReport report;
+  const PolyMesh mesh = paint(*model, 0.06, {}, {}, &report);
+  expectSound(mesh);
+  ASSERT_EQ(report.regions.size(), 2u);
+  EXPECT_TRUE(report.regions[0].open);
+  EXPECT_FALSE(report.regions[1].open);
+  const double volume = summarise(mesh, measure(mesh), {}).totalVolume;
+  EXPECT_GT(volume, std::pow(1 - 5 * 0.06, 3));
+  EXPECT_LT(volume, 1);
+  // Every side of the cube is a patch with faces.
+  for (Id patch = 0; patch < 6; ++patch)
+    EXPECT_GT(std::count(mesh.patch.begin(), mesh.patch.end(), patch), 0) << mesh.patchNames[patch];
+}
+
+TEST(PaintFront, FlippedTrianglesChangeNothing) {
+  const Soup soup = cylinder(40);
+  const PolyMesh a = paint(*soup.model(), 0.1), b = paint(*soup.flipped(5).model(), 0.1);
+  EXPECT_EQ(checksum(a), checksum(b));
+}
+
+TEST(PaintFront, OutsideReachesTheSidesOfTheDomain) {
+  const auto model = cube().model();
+  OctreeDecomposeOptions o;
+  o.useDomain = true;
+  o.domain.add(Vec3(-1, -1, -1));
+  o.domain.add(Vec3(2, 2, 2));
+  PaintFrontOptions front;
+  front.region = Region::Outside;
+  const PolyMesh mesh = paint(*model, 0.1, front, o);
+  expectSound(mesh);
+  ASSERT_EQ(mesh.patchNames.size(), 7u);
+  EXPECT_EQ(mesh.patchNames[1], "xmin");
+  EXPECT_EQ(mesh.patchTypes[1], "patch");
+  const MeshMeasures m = measure(mesh);
+  for (Id side = 1; side < 7; ++side) {
+    double area = 0;
+    for (Id b = 0; b < mesh.boundaryFaces(); ++b)
+      if (mesh.patch[b] == side) area += m.faces[mesh.internalFaces() + b].normal.norm();
+    EXPECT_NEAR(area, 9, 1e-9) << mesh.patchNames[side];
+  }
+}
+
+TEST(PaintFront, DisjointCubesAreRegionsOfTheirOwn) {
+  Soup two = cube();
+  two.append(cube().mapped([](const Vec3& p) { return Vec3(0.5 * p + Vec3(2, 0, 0)); }));
+  const auto model = two.model();
+  PaintFrontOptions front;
+  front.region = Region::Points;
+  front.points = {Vec3(2.25, 0.25, 0.25)};
+  const PolyMesh small = paint(*model, 0.05, front);
+  front.points.push_back(Vec3(0.5, 0.5, 0.5));
+  const PolyMesh both = paint(*model, 0.05, front);
+  const PolyMesh large = paint(*model, 0.05);
+  expectSound(both);
+  EXPECT_EQ(small.cellCount + large.cellCount, both.cellCount);
+  EXPECT_GT(large.cellCount, small.cellCount);
+}
+
+TEST(PaintFront, LeaksAndBadPointsAreNamed) {
+  Soup open = cube();
+  open.triangles.pop_back();
+  open.triangles.pop_back();
+  open.patches.resize(open.triangles.size());
+  const auto model = open.model();
+  EXPECT_THROW(paint(*model, 0.05), RegionError) << "a cube without a side encloses nothing";
+  PaintFrontOptions front;
+  front.region = Region::Points;
+  front.points = {Vec3(0.5, 0.5, 0.5)};
+  EXPECT_THROW(paint(*model, 0.05, front), RegionError) << "the region leaks";
+  front.points = {Vec3(100, 0, 0)};
+  EXPECT_THROW(paint(*model, 0.05, front), RegionError) << "the point is outside the domain";
+  front.points = {Vec3(0.5, 0.5, 0)};
+  EXPECT_THROW(paint(*model, 0.05, front), RegionError) << "the point is on the geometry";
+  front.points.clear();
+  EXPECT_THROW(paint(*model, 0.05, front), InputError);
+}
+
+TEST(PaintFront, RandomSoupsGiveSoundFronts) {
+  OctreeDecomposeOptions o;
+  o.useDomain = true;
+  o.domain.add(Vec3(-0.5, -0.5, -0.5));
+  o.domain.add(Vec3(1.5, 1.5, 1.5));
+  o.baseSize = 0.5;
+  PaintFrontOptions front;
+  front.region = Region::Outside;
+  for (unsigned seed = 0; seed < 8; ++seed) expectSound(paint(*randomSoup(60, 0.3, seed).model(), 0.0625, front, o));
+}
+
+}  // namespace

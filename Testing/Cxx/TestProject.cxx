@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Wall nodes on the geometry, every limit kept, the same bits for any number of threads.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "DummyLayer.h"
+#include "OctreeDecompose.h"
+#include "PaintFront.h"
+#include "Project.h"
+#include "TestSurfaces.h"
+
+namespace {
+
+using namespace pm;
+using namespace pm::testing;
+
+PolyMesh layered(const SurfaceModel& model, double size) {
+  Monitor monitor;
+  OctreeDecomposeOptions o;
+  o.featureSize = size;
+  return dummyLayer(paintFront(decompose(model, o, monitor), model, {}, monitor), {}, monitor);
+}
+
+PolyMesh projected(const SurfaceModel& model, double size, bool cache = true) {
+  Monitor monitor;
+  PolyMesh mesh = layered(model, size);
+  DistanceField field(model, mesh.finestSize, cache);
+  project(mesh, field, {}, monitor);
+  return mesh;
+}
+
+/// Share of wall points within the distance of the geometry.
+double within(const PolyMesh& mesh, const SurfaceModel& model, double distance) {
+  Id near = 0, all = 0;
+  for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+    if (mesh.base[p] == kNone) continue;
+    ++all;
+    near += std::sqrt(model.closest(mesh.points[p]).distance2) <= distance;
+  }
+  return double(near) / all;
+}
+
+TEST(Project, ACylindersWallIsOnTheCylinder) {
+  const auto model = cylinder(64).model();
+  const PolyMesh mesh = projected(*model, 0.1);
+  EXPECT_EQ(checkTopology(mesh), "");
+  const MeshMeasures m = measure(mesh);
+  const QualitySummary q = summarise(mesh, m, {});
+  EXPECT_EQ(q.violations, 0) << describeViolations(mesh, m, {});
+  EXPECT_GT(within(mesh, *model, 1e-3 * 0.1), 0.999);
+  EXPECT_NEAR(q.totalVolume, 2 * 3.14159, 0.03 * 2 * 3.14159);
+  EXPECT_EQ(mesh.stage, Stage::Projected);
+}
+
+TEST(Project, ADirtySoupStillEndsValid) {
+  // A cylinder whose triangles are all shaken apart by a fifth of a cell and half of them flipped.
+  Soup soup = cylinder(48).flipped(3);
+  std::mt19937_64 g(4);
+  Soup dirty;
+  for (const auto& t : soup.triangles) {
+    const Vec3 shift = 0.02 * randomPoint(g, -1, 1);
+    dirty.add(soup.points[t[0]] + shift, soup.points[t[1]] + shift, soup.points[t[2]] + shift);
+  }
+  const auto model = dirty.model();
+  const PolyMesh mesh = projected(*model, 0.1);
+  const MeshMeasures m = measure(mesh);
+  EXPECT_EQ(summarise(mesh, m, {}).violations, 0) << describeViolations(mesh, m, {});
+  EXPECT_GT(within(mesh, *model, 0.05 * 0.1), 0.95);
+}
+
+TEST(Project, SameBitsForAnyThreadCountAndWithoutTheCache) {
+  const auto model = cylinder(40).model();
+  std::uint64_t one = 0, three = 0, uncached = 0;
+  withThreads(1, [&] { one = checksum(projected(*model, 0.12)); });
+  withThreads(3, [&] { three = checksum(projected(*model, 0.12)); });
+  withThreads(2, [&] { uncached = checksum(projected(*model, 0.12, false)); });
+  EXPECT_EQ(one, three);
+  EXPECT_EQ(one, uncached);
+}
+
+TEST(Project, StopsWhenAsked) {
+  struct Stop : Monitor {
+    bool aborted() const override { return true; }
+  } stop;
+  const auto model = cylinder(32).model();
+  PolyMesh mesh = layered(*model, 0.2);
+  DistanceField field(*model, mesh.finestSize);
+  EXPECT_THROW(project(mesh, field, {}, stop), AbortError);
+}
+
+}  // namespace

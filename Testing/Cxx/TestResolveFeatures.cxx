@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Features resolved on meshes that went through the chain, inside small closed shapes.
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <memory>
+
+#include "DummyLayer.h"
+#include "OctreeDecompose.h"
+#include "PaintFront.h"
+#include "Project.h"
+#include "ResolveFeatures.h"
+#include "WallSurface.h"
+
+namespace {
+
+using namespace pm;
+
+struct Soup {
+  std::vector<Vec3> points;
+  std::vector<SurfaceModel::Triangle> triangles;
+  std::vector<Id> patches;
+  std::vector<std::string> names;
+
+  void add(const Vec3& a, const Vec3& b, const Vec3& c, Id patch) {
+    const Id n = static_cast<Id>(points.size());
+    points.insert(points.end(), {a, b, c});
+    triangles.push_back({n, n + 1, n + 2});
+    patches.push_back(patch);
+  }
+  void quad(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, Id patch) {
+    add(a, b, c, patch);
+    add(a, c, d, patch);
+  }
+  void turn(const Eigen::Matrix3d& r) {
+    for (Vec3& p : points) p = r * p;
+  }
+  std::unique_ptr<SurfaceModel> model() const {
+    return std::make_unique<SurfaceModel>(points, triangles, patches, names);
+  }
+};
+
+const Eigen::Matrix3d kTurn = Eigen::AngleAxisd(0.5, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+
+/// Edge 2, a patch for each axis.
+Soup cube() {
+  Soup s;
+  s.names = {"x", "y", "z"};
+  for (int axis = 0; axis < 3; ++axis)
+    for (double side : {-1.0, 1.0}) {
+      Vec3 n = Vec3::Zero(), u = n, v = n;
+      n[axis] = side;
+      u[(axis + 1) % 3] = side;
+      v[(axis + 2) % 3] = 1;
+      s.quad(n - u - v, n + u - v, n + u + v, n - u + v, axis);
+    }
+  return s;
+}
+
+/// Radius 1, height 2: two curves without corners.
+Soup cylinder(int columns) {
+  Soup s;
+  s.names = {"side", "bottom", "top"};
+  const auto at = [&](int i, double z) {
+    const double t = 2 * M_PI * (i % columns) / columns;
+    return Vec3(std::cos(t), std::sin(t), z);
+  };
+  for (int i = 0; i < columns; ++i) {
+    s.quad(at(i, -1), at(i + 1, -1), at(i + 1, 1), at(i, 1), 0);
+    s.add(Vec3(0, 0, -1), at(i + 1, -1), at(i, -1), 1);
+    s.add(Vec3(0, 0, 1), at(i, 1), at(i + 1, 1), 2);
+  }
+  return s;
+}
+
+/// A sphere of triangles too small and too many to have a sharp edge.
+Soup sphere() {
+  Soup s;
+  s.names = {"sphere"};
+  const int n = 24;
+  const auto at = [&](int i, int j) {
+    const double a = M_PI * i / n, b = M_PI * (j % (2 * n)) / n;
+    return Vec3(std::sin(a) * std::cos(b), std::sin(a) * std::sin(b),
+                i == 0   ? 1.0
+                : i == n ? -1.0
+                         : std::cos(a));
+  };
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < 2 * n; ++j) {
+      if (i > 0) s.add(at(i, j), at(i + 1, j), at(i, j + 1), 0);
+      if (i < n - 1) s.add(at(i + 1, j), at(i + 1, j + 1), at(i, j + 1), 0);
+    }
+  return s;
+}
+
+PolyMesh projected(const SurfaceModel& model, DistanceField& field, double size) {
+  Monitor monitor;
+  OctreeDecomposeOptions octree;
+  octree.featureSize = size;
+  PolyMesh mesh = dummyLayer(paintFront(decompose(model, octree, monitor), model, {}, monitor), {}, monitor);
+  project(mesh, field, {}, monitor);
+  return mesh;
+}
+
+struct Resolved {
+  std::unique_ptr<SurfaceModel> model;
+  PolyMesh mesh;
+  ResolveFeaturesReport report;
+};
+
+Resolved resolve(const Soup& soup, double size) {
+  Resolved r;
+  r.model = soup.model();
+  DistanceField field(*r.model, size);
+  r.mesh = projected(*r.model, field, size);
+  Monitor monitor;
+  resolveFeatures(r.mesh, field, {}, monitor, &r.report);
+  return r;
+}
+
+void expectValid(const PolyMesh& mesh) {
+  EXPECT_EQ(mesh.stage, Stage::Resolved);
+  EXPECT_EQ(checkTopology(mesh), "");
+  EXPECT_EQ(describeViolations(mesh, measure(mesh), {}), "");
+  PolyMesh again = mesh;
+  canonicalise(again);
+  EXPECT_EQ(checksum(again), checksum(mesh));
+}
+
+TEST(ResolveFeatures, CubeInAnyPosition) {
+  Soup soup = cube();
+  soup.turn(kTurn);
+  const Resolved r = resolve(soup, 0.15);
+  expectValid(r.mesh);
+  EXPECT_NEAR(r.report.featureLength, 24, 1e-9);
+  EXPECT_GT(r.report.resolvedLength, 0.95 * 24);
+  EXPECT_EQ(r.report.corners, 8);
+  EXPECT_EQ(r.report.resolvedCorners, 8);
+  // Each wall face lies in one side of the cube, in that side's patch.
+  const Id first = r.mesh.internalFaces();
+  double area = 0, wrong = 0;
+  for (Id i = 0; i < r.mesh.boundaryFaces(); ++i) {
+    const FaceMeasures m = measureFace(r.mesh.points, r.mesh.faces[first + i], true);
+    const Vec3 normal = kTurn.transpose() * m.normal;
+    area += normal.norm();
+    if (std::abs(normal[r.mesh.patch[i]]) < 0.99 * normal.norm()) wrong += normal.norm();
+  }
+  EXPECT_LT(wrong, 0.03 * area);
+  EXPECT_NEAR(area, 24, 0.3);
+}
+
+TEST(ResolveFeatures, ClosedCurves) {
+  Soup soup = cylinder(48);
+  soup.turn(kTurn);
+  const Resolved r = resolve(soup, 0.15);
+  expectValid(r.mesh);
+  EXPECT_GT(r.report.resolvedLength, 0.95 * r.report.featureLength);
+  EXPECT_NEAR(r.report.featureLength, 4 * M_PI, 0.02);
+}
+
+TEST(ResolveFeatures, InterfaceInAPlane) {
+  Soup soup = cube();
+  soup.names.push_back("spot");
+  // The upper side again, in two patches that meet in a slanted line.
+  soup.triangles.erase(soup.triangles.end() - 2, soup.triangles.end());
+  soup.patches.erase(soup.patches.end() - 2, soup.patches.end());
+  const Vec3 a(-0.23, -1, 1), b(0.41, 1, 1);
+  soup.quad(Vec3(-1, -1, 1), a, b, Vec3(-1, 1, 1), 2);
+  soup.quad(a, Vec3(1, -1, 1), Vec3(1, 1, 1), b, 3);
+  const double size = 0.15;
+  const Resolved r = resolve(soup, size);
+  expectValid(r.mesh);
+  EXPECT_GT(r.report.resolvedLength, 0.97 * r.report.featureLength);
+  // The patches meet where the interface is.
+  std::vector<std::uint8_t> touches(r.mesh.points.size(), 0);
+  for (Id i = 0; i < r.mesh.boundaryFaces(); ++i)
+    for (Id p : r.mesh.faces[r.mesh.internalFaces() + i]) touches[p] |= 1 << r.mesh.patch[i];
+  int between = 0;
+  for (std::size_t p = 0; p < touches.size(); ++p) {
+    if ((touches[p] & 12) != 12 || std::abs(r.mesh.points[p].y()) > 0.95) continue;
+    ++between;
+    EXPECT_LT((r.mesh.points[p] - a).cross((b - a).normalized()).norm(), 0.1 * size);
+  }
+  EXPECT_GT(between, 8);
+}
+
+TEST(ResolveFeatures, LeavesSmoothShapesAlone) {
+  const auto model = sphere().model();
+  DistanceField field(*model, 0.2);
+  PolyMesh mesh = projected(*model, field, 0.2);
+  const std::vector<Vec3> before = mesh.points;
+  Monitor monitor;
+  ResolveFeaturesReport report;
+  resolveFeatures(mesh, field, {}, monitor, &report);
+  expectValid(mesh);
+  EXPECT_EQ(report.featureLength, 0);
+  EXPECT_EQ(mesh.points, before);
+}
+
+TEST(ResolveFeatures, SameForAnyNumberOfThreads) {
+  Soup soup = cube();
+  soup.turn(kTurn);
+  std::uint64_t first = 0;
+  for (int threads : {1, 2, 4}) {
+    tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    const std::uint64_t sum = checksum(resolve(soup, 0.25).mesh);
+    if (threads == 1) first = sum;
+    EXPECT_EQ(sum, first);
+  }
+}
+
+TEST(ResolveFeatures, StopsOnRequest) {
+  struct Impatient : Monitor {
+    mutable int calls = 0;
+    bool aborted() const override { return ++calls > 3; }
+  } impatient;
+  const auto model = cube().model();
+  DistanceField field(*model, 0.25);
+  PolyMesh mesh = projected(*model, field, 0.25);
+  EXPECT_THROW(resolveFeatures(mesh, field, {}, impatient), AbortError);
+}
+
+TEST(ResolveFeatures, RefusesWhatDoesNotFit) {
+  const auto model = cube().model();
+  DistanceField field(*model, 0.25);
+  PolyMesh mesh = projected(*model, field, 0.25);
+  Monitor monitor;
+  PolyMesh tooEarly = mesh;
+  tooEarly.stage = Stage::Layer;
+  EXPECT_THROW(resolveFeatures(tooEarly, field, {}, monitor), InputError);
+  mesh.patchNames[1] = "another";
+  EXPECT_THROW(resolveFeatures(mesh, field, {}, monitor), InputError);
+}
+
+}  // namespace

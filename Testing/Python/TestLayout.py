@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The layout of the sources: five places a filter, short files and functions, nothing unfinished, no machine's paths."""
+import ast
+import os
+import re
+import unittest
+import xml.etree.ElementTree as ElementTree
+
+ROOT = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
+STAGES = ("OctreeDecompose", "PaintFront", "DummyLayer", "Project", "ResolveFeatures", "BoundaryRefine")
+PLACES = ("Filters/Core/{}.h", "Filters/Core/{}.cxx", "Filters/vtk{}.h", "Filters/vtk{}.cxx", "XML/{}.xml",
+          "Testing/Cxx/Test{}.cxx", "Testing/Python/Test{}.py", "Docs/{}.md")
+FOLDERS = ("Filters", "Plugin", "XML", "Testing", "Docs", ".ci")
+ENDINGS = (".h", ".cxx", ".py", ".xml", ".md", ".cmake", ".txt", ".sh", ".plugin", ".module")
+LONGEST_FILE = 500
+LONGEST_FUNCTION = 60
+# Spelt so that this file does not hold the words itself.
+UNFINISHED = re.compile(r"\b(TO" + r"DO|FIX" + r"ME|X" + r"XX|HA" + r"CK)\b|not (yet )?impl" + r"emented")
+MACHINE_PATHS = re.compile(r"(?<![\w.}])/(ro" + r"ot|ho" + r"me|wo" + r"rk|tm" + r"p)/\w")
+
+
+def sources():
+    """Paths of all text files of the project, relative to its root."""
+    found = [name for name in sorted(os.listdir(ROOT)) if name.endswith(ENDINGS)]
+    for folder in FOLDERS:
+        for where, folders, names in os.walk(os.path.join(ROOT, folder)):
+            folders[:] = sorted(f for f in folders if f != "__pycache__")
+            found += [os.path.relpath(os.path.join(where, name), ROOT) for name in sorted(names)
+                      if name.endswith(ENDINGS) or "." not in name]
+    return found
+
+
+def read(path):
+    with open(os.path.join(ROOT, path), encoding="utf-8") as file:
+        return file.read()
+
+
+def cxx_functions(text):
+    """(name line, lines of the body) of functions that start in the first column."""
+    start = None
+    for number, line in enumerate(text.splitlines(), 1):
+        if re.match(r"[A-Za-z~].*\{$", line) and not re.match(r"(namespace|class|struct|enum|union|extern)\b", line):
+            start = number
+        elif line.startswith("    ") and line.rstrip().endswith(") {") and start is None:
+            start = number  # a signature that runs over two lines
+        elif line == "}" and start is not None:
+            yield start, number - start - 1
+            start = None
+        elif line.startswith("};"):
+            start = None
+
+
+class Layout(unittest.TestCase):
+    def test_every_stage_has_its_places(self):
+        missing = [place.format(stage) for stage in STAGES for place in PLACES
+                   if not os.path.exists(os.path.join(ROOT, place.format(stage)))]
+        self.assertEqual(missing, [])
+
+    def test_every_class_has_its_server_manager_file(self):
+        classes = re.findall(r"^ +vtk(\w+)", read("Filters/CMakeLists.txt"), re.M)
+        shared = {"MeshStage", "ValidMeshStage"}
+        self.assertGreaterEqual(set(classes), set(STAGES))
+        missing = [f"XML/{name}.xml" for name in classes
+                   if name not in shared and not os.path.exists(os.path.join(ROOT, "XML", f"{name}.xml"))]
+        self.assertEqual(missing, [])
+
+    def test_every_property_is_on_its_page(self):
+        """With its default; the validity limits, which many filters share, stand on the page of Mesh Validity."""
+        limits = read("Docs/MeshValidity.md")
+        absent = []
+        for stem in STAGES + ("ProjectionMesh", "MeshValidity"):
+            page = read(f"Docs/{stem}.md")
+            for element in ElementTree.fromstring(read(f"XML/{stem}.xml")).iter():
+                if not element.tag.endswith("VectorProperty"):
+                    continue
+                name, default = element.get("name"), element.get("default_values", "")
+                row = re.search(rf"^\| `{name}` \| (.*?) \|", page + limits, re.M)
+                same = row and (element.tag != "DoubleVectorProperty" or default.startswith("0.333")
+                                or element.get("repeat_command") or row.group(1) == default)
+                if not same:
+                    absent.append(f"{stem}.{name}")
+        self.assertEqual(absent, [])
+
+    def test_files_are_short(self):
+        long = [f"{path}: {lines} lines" for path in sources()
+                if (lines := read(path).count("\n")) > LONGEST_FILE]
+        self.assertEqual(long, [])
+
+    def test_functions_are_short(self):
+        long, counted = [], 0
+        for path in sources():
+            if path.endswith(".cxx"):
+                lengths = list(cxx_functions(read(path)))
+            elif path.endswith(".py"):
+                lengths = [(node.lineno, node.end_lineno - node.lineno) for node in ast.walk(ast.parse(read(path)))
+                           if isinstance(node, ast.FunctionDef)]
+            else:
+                continue
+            counted += len(lengths)
+            long += [f"{path}:{line}: {length} lines" for line, length in lengths if length > LONGEST_FUNCTION]
+        self.assertGreater(counted, 300)  # the scan sees functions
+        self.assertEqual(long, [])
+
+    def test_nothing_is_unfinished(self):
+        marked = [f"{path}:{number}: {line.strip()}" for path in sources()
+                  for number, line in enumerate(read(path).splitlines(), 1) if UNFINISHED.search(line)]
+        self.assertEqual(marked, [])
+
+    def test_no_paths_of_one_machine(self):
+        named = [f"{path}:{number}: {line.strip()}" for path in sources()
+                 for number, line in enumerate(read(path).splitlines(), 1) if MACHINE_PATHS.search(line)]
+        self.assertEqual(named, [])
+
+    def test_licence_line(self):
+        without = [path for path in sources() if path.endswith((".h", ".cxx", ".py", ".sh", ".cmake"))
+                   and "SPDX-License-Identifier: BSD-3-Clause" not in "\n".join(read(path).splitlines()[:3])]
+        self.assertEqual(without, [])
+
+    def test_kernel_knows_nothing_of_vtk(self):
+        using = [path for path in sources() if path.startswith("Filters/Core/")
+                 and re.search(r"#include [<\"]vtk", read(path))]
+        self.assertEqual(using, [])
+
+    def test_only_the_distance_field_uses_openvdb(self):
+        using = [path for path in sources() if path.endswith((".h", ".cxx")) and "#include <openvdb" in read(path)]
+        self.assertEqual(using, ["Filters/Core/DistanceField.cxx"])
+
+
+if __name__ == "__main__":
+    unittest.main()
