@@ -10,7 +10,7 @@ set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_BINDIR})
 set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR})
 set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR})
 
-# The module, importable in Python as projection_mesher.ProjectionMesherFilters.
+# The module; its classes can be imported in Python from projection_mesher.
 vtk_module_scan(
   MODULE_FILES ${PROJECT_SOURCE_DIR}/Filters/vtk.module
   PROVIDES_MODULES module
@@ -25,12 +25,19 @@ vtk_module_build(
 if(PARAVIEW_USE_PYTHON)
   find_package(Python3 REQUIRED COMPONENTS Interpreter Development)
   set(PROJECTIONMESHER_PYTHON_DIR ${CMAKE_INSTALL_LIBDIR}/python3/dist-packages)
+  set(package projection_mesher)
+  set(CMAKE_INSTALL_RPATH "\$ORIGIN/../../..")
   vtk_module_wrap_python(
     MODULES ${module}
     TARGET ProjectionMesher::Python
-    PYTHON_PACKAGE projection_mesher
+    PYTHON_PACKAGE ${package}
     MODULE_DESTINATION ${PROJECTIONMESHER_PYTHON_DIR}
     INSTALL_HEADERS OFF)
+  unset(CMAKE_INSTALL_RPATH)
+  configure_file(${PROJECT_SOURCE_DIR}/Plugin/${package}/__init__.py
+    ${CMAKE_BINARY_DIR}/${PROJECTIONMESHER_PYTHON_DIR}/${package}/__init__.py COPYONLY)
+  install(FILES ${PROJECT_SOURCE_DIR}/Plugin/${package}/__init__.py
+    DESTINATION ${PROJECTIONMESHER_PYTHON_DIR}/${package})
 endif()
 
 paraview_plugin_scan(

@@ -162,20 +162,26 @@ class Runner:
     def stop(self, *_):
         self.stopped = True
 
+    @staticmethod
+    def collect(algorithm, event):
+        """The list that the texts of the event will be in."""
+        texts = []
+
+        def observer(_caller, _event, text):
+            texts.append(text)
+        observer.CallDataType = "string0"
+        algorithm.AddObserver(event, observer)
+        return texts
+
     def run(self, stage, algorithm, action=None):
         """Updates algorithm, or calls action in its place (a writer's Write)."""
-        errors = []
-
-        def on_error(_caller, _event, text):
-            errors.append(text)
-        on_error.CallDataType = "string0"
+        errors, warnings = self.collect(algorithm, "ErrorEvent"), self.collect(algorithm, "WarningEvent")
 
         def on_progress(caller, _event):
             if self.stopped:
                 caller.SetAbortExecute(1)
             self.progress.show(stage, caller.GetProgress(), caller.GetProgressText() or "")
 
-        algorithm.AddObserver("ErrorEvent", on_error)
         algorithm.GetExecutive().AddObserver("ErrorEvent", lambda *_: None)  # it only says that the filter failed
         algorithm.AddObserver("ProgressEvent", on_progress)
         reset_peak_memory()
@@ -188,6 +194,8 @@ class Runner:
             raise UserError("Stopped on request." if self.stopped else sentence(errors[0]))
         self.measured.append((stage, seconds, megabytes))
         self.progress.finish(stage, f"{seconds:.2f} s")
+        for warning in warnings:
+            print(f"mesh.sh: warning: {sentence(warning)}", file=sys.stderr)
 
 
 def sentence(error):

@@ -43,7 +43,8 @@ def worst_measures(v):
 
 
 def share(part, whole):
-    return f"{part:,.4g} of {whole:,.4g}" + (f" ({100 * part / whole:.1f}%)" if whole else "")
+    form = ",d" if isinstance(part, int) else ",.4g"
+    return f"{part:{form}} of {whole:{form}}" + (f" ({100 * part / whole:.1f}%)" if whole else "")
 
 
 def features(stage):

@@ -3,7 +3,9 @@
 //
 // A voxel holds the triangle closest to its centre and that distance. A query takes its voxel's triangle as the first
 // upper bound of the exact search in SurfaceModel, so a cold, a warm and a disabled cache give the same answers, bit
-// for bit; only the time differs.
+// for bit; only the time differs. What it saves is modest, for the search alone is fast: on 264,000 triangles some
+// 1 us a query within a few cells of the surface, where a seed saves at most a tenth, and 10 us far away, where it
+// saves a quarter. Fill it only for points that are asked for several times.
 #pragma once
 
 #include <memory>

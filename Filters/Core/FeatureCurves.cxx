@@ -9,7 +9,6 @@ namespace pm {
 
 namespace {
 
-constexpr double kDegrees = 180 / 3.14159265358979323846;
 constexpr int kMaxReachSteps = 64;  // bounds the work where points are packed far denser than the reach
 
 /// A walk over links without branches. Closed chains repeat no point.
@@ -129,8 +128,7 @@ class CurveBuilder {
 
   double turnAt(const Chain& chain, std::size_t i) const {
     const Vec3 back = -directionFrom(chain, i, -1), ahead = directionFrom(chain, i, 1);
-    const Vec3 u = back.stableNormalized(), v = ahead.stableNormalized();
-    return 2 * std::atan2((u - v).norm(), (u + v).norm()) * kDegrees;
+    return angleBetween(back.stableNormalized(), ahead.stableNormalized());
   }
 
   /// Positions where the chain turns by more than cornerAngle, ascending; of several within the reach the

@@ -15,7 +15,6 @@ namespace {
 
 using Triangle = SurfaceModel::Triangle;
 
-constexpr double kDegrees = 180 / 3.14159265358979323846;
 // Coordinates read from text have about six digits: over its opposite edge a point lower than this part of
 // the model's diagonal says nothing about where its triangle faces.
 constexpr double kTrustedHeight = 8e-6;
@@ -130,7 +129,7 @@ class EdgeClassifier {
         across = along.cross(first);
         continue;
       }
-      double angle = std::atan2(side.dot(across), side.dot(first)) * kDegrees;
+      double angle = std::atan2(side.dot(across), side.dot(first)) * kDegreesPerRadian;
       if (wings.size() == 2) return 180 - std::abs(angle) > options_.sharpAngle;
       if (std::abs(angle) > 90) {
         opposed = true;

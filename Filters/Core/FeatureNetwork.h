@@ -3,9 +3,18 @@
 // Internal to feature detection (FeatureEdges.h).
 #pragma once
 
+#include <cmath>
+
 #include "FeatureEdges.h"
 
 namespace pm {
+
+constexpr double kDegreesPerRadian = 180 / 3.14159265358979323846;
+
+/// Degrees between unit vectors, accurate for small and for flat angles.
+inline double angleBetween(const Vec3& u, const Vec3& v) {
+  return 2 * std::atan2((u - v).norm(), (u + v).norm()) * kDegreesPerRadian;
+}
 
 struct FeatureNetwork {
   struct Link {

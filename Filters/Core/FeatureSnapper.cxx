@@ -9,11 +9,12 @@ namespace {
 
 constexpr int kRings = 3;           // wall nodes this many edges from a target take part in the smoothing
 constexpr int kDistanceGroups = 4;  // eq 4-31
-constexpr double kReached = 1e-3;   // length scales
-constexpr double kSnapTolerance =
-    0.1;  // length scales a face may leave the geometry by when a node reaches a feature
-constexpr double kCrowded = 0.2;  // length scales between nodes of a path
+// The rest in length scales: what counts as reached, how far a face may leave the geometry when a node
+// reaches a feature and when it is smoothed, and how near the nodes of a path may come.
+constexpr double kReached = 1e-3;
+constexpr double kSnapTolerance = 0.1;
 constexpr double kSmoothTolerance = 0.02;
+constexpr double kCrowded = 0.2;
 
 }  // namespace
 

@@ -14,18 +14,12 @@ namespace pm {
 
 namespace {
 
-constexpr double kDegrees = 180 / 3.14159265358979323846;
 // A triangle that shares a point with the edge is near it there in any case; beside the edge it counts only
 // within this part of the distance to the shared point.
 constexpr double kSharedPointSlope = 0.1;
-// Of the gap tolerance: pieces of split links are not shorter, so that lines do not zigzag between two
-// borders.
-constexpr double kShortestStep = 0.25;
 
 bool planesDiffer(const SurfaceModel& model, Id s, Id t, double degrees) {
-  const Vec3& m = model.normal(s);
-  const Vec3& n = model.normal(t);
-  const double angle = 2 * std::atan2((m - n).norm(), (m + n).norm()) * kDegrees;
+  const double angle = angleBetween(model.normal(s), model.normal(t));
   return std::min(angle, 180 - angle) > degrees;
 }
 
@@ -78,13 +72,15 @@ class Welder {
     for (const OpenEdge& e : open) loose.push_back({e.a, e.b, kOpenEdge});
     if (tolerance2_ > 0) {
       joinPoints(loose);
+      unify(loose);
       loose = split(loose);
+      unify(loose);
       const Bvh firm = bvhOver(network_.links);
       dropCovered(loose, firm);
       splitFirm(loose, firm);
     }
     network_.links.insert(network_.links.end(), loose.begin(), loose.end());
-    unify();
+    unify(network_.links);
   }
 
  private:
@@ -264,13 +260,13 @@ class Welder {
       out.push_back({std::min(last, next), std::max(last, next), link.kind});
       last = next;
     };
-    for (const auto& [place, p] : places) append(p);
+    for (const auto& [place, p] : places)
+      if (place > 0 && place < d.squaredNorm()) append(p);
     append(link.b);
   }
 
   /// Each pair of points once, with the kinds of all its links.
-  void unify() {
-    Links& links = network_.links;
+  static void unify(Links& links) {
     std::sort(links.begin(), links.end(), [](const auto& x, const auto& y) {
       return x.a != y.a ? x.a < y.a : x.b != y.b ? x.b < y.b : x.kind < y.kind;
     });

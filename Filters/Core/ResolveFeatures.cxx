@@ -2,11 +2,13 @@
 #include "ResolveFeatures.h"
 
 #include <fmt/core.h>
+#include <tbb/parallel_for.h>
 
 #include "FeatureCoverage.h"
 #include "FeaturePaths.h"
 #include "FeatureSnapper.h"
 #include "NodeMover.h"
+#include "WallFit.h"
 #include "WallPatches.h"
 
 namespace pm {
@@ -18,9 +20,9 @@ constexpr float kMissPenalty =
     0.3f;  // length scales a node counts as farther for each round it missed its target
 
 /// Traces and snaps; nodes that miss make room for others in the next round.
-void snapRounds(PolyMesh& mesh, const WallSurface& wall, const DistanceField& field,
+void snapRounds(NodeMover& mover, const WallSurface& wall, const DistanceField& field,
                 const FeatureGraph& graph, const ResolveFeaturesOptions& options, Monitor& monitor) {
-  NodeMover mover(mesh, options.limits);
+  const PolyMesh& mesh = mover.mesh();
   FeatureSnapper snapper(mover, wall, field, graph);
   std::vector<float> penalty(wall.nodes.size(), 0.0f);
   const double steps = options.rounds * kSteps;
@@ -42,6 +44,23 @@ void snapRounds(PolyMesh& mesh, const WallSurface& wall, const DistanceField& fi
   }
 }
 
+/// Unstitched patches meet within a fraction of a cell; wider gaps are the user's to name.
+FeatureOptions effective(FeatureOptions features, const PolyMesh& mesh) {
+  constexpr double kGap = 0.25;
+  if (features.gapTolerance <= 0) features.gapTolerance = kGap * mesh.finestSize;
+  return features;
+}
+
+/// Wall rows that lie on a feature.
+std::vector<std::uint8_t> onFeatures(const PolyMesh& mesh, const WallSurface& wall, const FeatureGraph& graph) {
+  constexpr double kOn = 1e-3;  // length scales, as for reaching a target
+  std::vector<std::uint8_t> on(wall.nodes.size(), 0);
+  tbb::parallel_for(Id(0), wall.size(), [&](Id row) {
+    on[row] = graph.closest(mesh.points[wall.nodes[row]], kOn * wall.scale[row]).segment != kNone;
+  });
+  return on;
+}
+
 }  // namespace
 
 void resolveFeatures(PolyMesh& mesh, DistanceField& field, const ResolveFeaturesOptions& options,
@@ -49,9 +68,14 @@ void resolveFeatures(PolyMesh& mesh, DistanceField& field, const ResolveFeatures
   if (mesh.stage < Stage::Projected)
     throw InputError("Features can only be resolved on a projected mesh: run Project first.");
   monitor.check(0.0, "feature detection");
-  const FeatureGraph graph = detectFeatures(field.model(), options.features);
+  const FeatureGraph graph = detectFeatures(field.model(), effective(options.features, mesh));
   const WallSurface wall = wallSurface(mesh);
-  if (!graph.curves().empty() && wall.size() > 0) snapRounds(mesh, wall, field, graph, options, monitor);
+  if (wall.size() > 0) {
+    NodeMover mover(mesh, options.limits);
+    if (!graph.curves().empty()) snapRounds(mover, wall, field, graph, options, monitor);
+    monitor.check(0.85, "fitting faces");
+    fitWall(mover, wall, field, onFeatures(mesh, wall, graph));
+  }
   monitor.check(0.9, "patches");
   assignWallPatches(mesh, field);
   if (report != nullptr) *report = featureCoverage(mesh, wall, graph);

@@ -105,23 +105,33 @@ void expectOutward(vtkCell* cell) {
   }
 }
 
-class Shapes : public testing::TestWithParam<std::pair<CellRows, int>> {};
+struct Shape {
+  const char* name;
+  CellRows faces;
+  int vtkType;
+};
+void PrintTo(const Shape& shape, std::ostream* out) { *out << shape.name; }
+
+class Shapes : public testing::TestWithParam<Shape> {};
 
 TEST_P(Shapes, KnownByVtk) {
   std::vector<pm::Vec3> points = cubeAndApex();
-  const pm::PolyMesh mesh = meshOf(points, {GetParam().first});
+  const pm::PolyMesh mesh = meshOf(points, {GetParam().faces});
   vtkNew<vtkUnstructuredGrid> grid;
   pm::packMesh(mesh, grid);
   ASSERT_EQ(grid->GetNumberOfCells(), 1);
-  EXPECT_EQ(grid->GetCellType(0), GetParam().second);
+  EXPECT_EQ(grid->GetCellType(0), GetParam().vtkType);
   expectOutward(grid->GetCell(0));
   expectEqual(pm::unpackMesh(grid, "test", {}), mesh);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Shapes,
-                         testing::Values(std::pair(kCube, VTK_HEXAHEDRON), std::pair(kPyramid, VTK_PYRAMID),
-                                         std::pair(kWedge, VTK_WEDGE), std::pair(kTetra, VTK_TETRA),
-                                         std::pair(kCutCube, VTK_POLYHEDRON)));
+INSTANTIATE_TEST_SUITE_P(MeshPacking, Shapes,
+                         testing::Values(Shape{"Hexahedron", kCube, VTK_HEXAHEDRON},
+                                         Shape{"Pyramid", kPyramid, VTK_PYRAMID},
+                                         Shape{"Wedge", kWedge, VTK_WEDGE},
+                                         Shape{"Tetrahedron", kTetra, VTK_TETRA},
+                                         Shape{"CutCube", kCutCube, VTK_POLYHEDRON}),
+                         [](const auto& info) { return std::string(info.param.name); });
 
 TEST(MeshPacking, CubeByAnyNumbering) {
   // The same cube with its points renamed in many ways keeps its faces.

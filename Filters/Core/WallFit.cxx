@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "WallFit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace pm {
+namespace {
+
+// In units of the finest cell: how far a node may leave the geometry, and the distance beyond which a point's error
+// is no chord's but a feature's that no shift of nodes would mend.
+constexpr double kMostShift = 0.045, kMostChord = 0.12;
+constexpr int kSweeps = 2;
+constexpr std::size_t kMostPoints = 48;
+
+/// The representative points around a node: itself, the middles of its edges on the wall, the centres of its faces.
+struct Around {
+  std::array<Vec3, kMostPoints> points;
+  std::size_t count = 0;
+  void add(const Vec3& p) {
+    if (count < kMostPoints) points[count++] = p;
+  }
+};
+
+class WallFitter {
+ public:
+  WallFitter(NodeMover& mover, const WallSurface& wall, const DistanceField& field)
+      : mover_(mover), wall_(wall), field_(field), unit_(mover.mesh().finestSize) {}
+
+  void fit(Id p) {
+    const Id row = wall_.rowOf[p];
+    Vec3 n = Vec3::Zero();
+    for (Id f : wall_.faces[row]) n += mover_.faceNormal(f);
+    if (!(n.norm() > 0)) return;
+    n.normalize();
+    double lowest = 0, highest = 0, own = 0;
+    const double before = look(p, n, &lowest, &highest, &own);
+    const double shift = std::clamp(0.5 * (lowest + highest), own - kMostShift * unit_, own + kMostShift * unit_);
+    if (std::abs(shift) < 0.002 * unit_) return;
+    const Vec3 old = mover_.point(p);
+    if (mover_.move(p, old + shift * n) && look(p, n, nullptr, nullptr, nullptr) >= before) mover_.move(p, old);
+  }
+
+ private:
+  // Sum of the points' capped distances to the fourth power, close to the largest of them but smooth; and the range
+  // of their signed distances along n (positive: the geometry lies outward).
+  double look(Id p, const Vec3& n, double* lowest, double* highest, double* own) const {
+    const Id row = wall_.rowOf[p];
+    const Vec3& x = mover_.point(p);
+    Around around;
+    around.add(x);
+    for (Id other : wall_.neighbours[row]) around.add(0.5 * (x + mover_.point(wall_.nodes[other])));
+    for (Id f : wall_.faces[row]) around.add(mover_.faceCentre(f));
+    double sum = 0;
+    for (std::size_t i = 0; i < around.count; ++i) {
+      const Vec3 r = field_.closest(around.points[i]).point - around.points[i];
+      const double distance = std::min(r.norm() / unit_, kMostChord), squared = distance * distance;
+      sum += squared * squared;
+      if (lowest == nullptr) continue;
+      const double along = r.dot(n);
+      if (i == 0) *own = along;
+      if (distance < kMostChord) {
+        *lowest = std::min(*lowest, along);
+        *highest = std::max(*highest, along);
+      }
+    }
+    return sum;
+  }
+
+  NodeMover& mover_;
+  const WallSurface& wall_;
+  const DistanceField& field_;
+  const double unit_;
+};
+
+}  // namespace
+
+void fitWall(NodeMover& mover, const WallSurface& wall, const DistanceField& field,
+             const std::vector<std::uint8_t>& keep) {
+  std::vector<Id> free;
+  for (Id row = 0; row < wall.size(); ++row)
+    if (!keep[row]) free.push_back(wall.nodes[row]);
+  const auto groups = mover.colour(free);
+  WallFitter fitter(mover, wall, field);
+  for (int sweep = 0; sweep < kSweeps; ++sweep) NodeMover::forEach(groups, [&](Id p) { fitter.fit(p); });
+}
+
+}  // namespace pm
