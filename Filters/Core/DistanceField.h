@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sparse cache of closest triangles on an OpenVDB grid, shared by the stages. The only part that uses OpenVDB.
+// Sparse cache of closest triangles on an OpenVDB grid, shared by the stages. The only part that uses
+// OpenVDB.
 //
-// A voxel holds the triangle closest to its centre and that distance. A query takes its voxel's triangle as the first
-// upper bound of the exact search in SurfaceModel, so a cold, a warm and a disabled cache give the same answers, bit
-// for bit; only the time differs. What it saves is modest, for the search alone is fast: on 264,000 triangles some
-// 1 us a query within a few cells of the surface, where a seed saves at most a tenth, and 10 us far away, where it
-// saves a quarter. Fill it only for points that are asked for several times.
+// A voxel holds the triangle closest to its centre and that distance. A query takes its voxel's triangle as
+// the first upper bound of the exact search in SurfaceModel, so a cold, a warm and a disabled cache give the
+// same answers, bit for bit; only the time differs. What it saves is modest, for the search alone is fast: on
+// 264,000 triangles some 1 us a query within a few cells of the surface, where a seed saves at most a tenth,
+// and 10 us far away, where it saves a quarter. Fill it only for points that are asked for several times.
 #pragma once
 
 #include <memory>
@@ -18,8 +19,8 @@ namespace pm {
 
 class DistanceField {
  public:
-  /// voxelSize: edge length, user's units; about the finest octree cell. enabled = false makes every query a plain
-  /// exact search. The model must outlive the field.
+  /// voxelSize: edge length, user's units; about the finest octree cell. enabled = false makes every query a
+  /// plain exact search. The model must outlive the field.
   DistanceField(const SurfaceModel& model, double voxelSize, bool enabled = true);
   ~DistanceField();
 
@@ -30,7 +31,8 @@ class DistanceField {
   Closest closest(const Vec3& p) const;
   std::size_t activeVoxels() const;
   std::size_t memoryBytes() const;
-  /// Keep the cache between runs. load returns false, and changes nothing, when the file is of another geometry.
+  /// Keep the cache between runs. load returns false, and changes nothing, when the file is of another
+  /// geometry.
   void save(const std::string& vdbFile) const;
   bool load(const std::string& vdbFile);
 

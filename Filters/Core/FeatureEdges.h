@@ -9,13 +9,15 @@
 namespace pm {
 
 struct FeatureOptions {
-  double sharpAngle = 30;     ///< degrees between the planes of two triangles at an edge; independent of orientation
-  double cornerAngle = 45;    ///< degrees a curve may turn at a point before the point becomes a corner
-  bool interfaces = true;     ///< edges between patches are features
-  bool openEdges = false;     ///< every open edge is a feature
-  double gapTolerance = 0;    ///< length; an open edge this close to a triangle whose plane differs by more than
-                              ///< sharpAngle, or to one of another patch, is a feature too (unstitched geometry)
-  double shortestCurve = 0;   ///< length; shorter open-ended curves that join nothing are dropped
+  double sharpAngle =
+      30;  ///< degrees between the planes of two triangles at an edge; independent of orientation
+  double cornerAngle = 45;  ///< degrees a curve may turn at a point before the point becomes a corner
+  bool interfaces = true;   ///< edges between patches are features
+  bool openEdges = false;   ///< every open edge is a feature
+  double gapTolerance =
+      0;  ///< length; an open edge this close to a triangle whose plane differs by more than
+          ///< sharpAngle, or to one of another patch, is a feature too (unstitched geometry)
+  double shortestCurve = 0;  ///< length; shorter open-ended curves that join nothing are dropped
 };
 
 enum FeatureKind : std::uint8_t { kSharpEdge = 1, kInterfaceEdge = 2, kOpenEdge = 4, kNonManifoldEdge = 8 };
@@ -23,7 +25,7 @@ enum FeatureKind : std::uint8_t { kSharpEdge = 1, kInterfaceEdge = 2, kOpenEdge 
 struct FeatureSegment {
   Vec3 a, b;
   Id curve = kNone;
-  std::uint8_t kind = 0;   ///< FeatureKind bits
+  std::uint8_t kind = 0;  ///< FeatureKind bits
 };
 
 /// A polyline; closed ones repeat no point and have no corners.
@@ -43,7 +45,8 @@ struct ClosestOnFeature {
 
 class FeatureGraph {
  public:
-  FeatureGraph(std::vector<Vec3> corners, std::vector<FeatureCurve> curves, std::vector<FeatureSegment> segments);
+  FeatureGraph(std::vector<Vec3> corners, std::vector<FeatureCurve> curves,
+               std::vector<FeatureSegment> segments);
   ~FeatureGraph();
   FeatureGraph(FeatureGraph&&) noexcept;
   FeatureGraph& operator=(FeatureGraph&&) noexcept;
@@ -51,7 +54,8 @@ class FeatureGraph {
   const std::vector<FeatureCurve>& curves() const { return curves_; }
   /// All curves' segments; a curve's own are consecutive and in its order.
   const std::vector<FeatureSegment>& segments() const { return segments_; }
-  /// Closest point on any curve, ties to the smallest segment id; nothing farther than maxDistance. Thread-safe.
+  /// Closest point on any curve, ties to the smallest segment id; nothing farther than maxDistance.
+  /// Thread-safe.
   ClosestOnFeature closest(const Vec3& p, double maxDistance = std::numeric_limits<double>::infinity()) const;
   /// Closest point on one curve.
   ClosestOnFeature closestOnCurve(const Vec3& p, Id curve) const;

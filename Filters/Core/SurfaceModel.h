@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The input geometry as the mesher sees it: a soup of triangles in patches, with an exact closest point.
 //
-// Nothing is assumed of the triangles but finite coordinates: they may overlap, intersect, repeat, be flipped or leave
-// gaps. Points are merged only where they are bitwise equal; triangles of no area and exact repetitions are dropped.
+// Nothing is assumed of the triangles but finite coordinates: they may overlap, intersect, repeat, be flipped
+// or leave gaps. Points are merged only where they are bitwise equal; triangles of no area and exact
+// repetitions are dropped.
 #pragma once
 
 #include <array>
@@ -25,8 +26,9 @@ class SurfaceModel {
  public:
   using Triangle = std::array<Id, 3>;
 
-  /// points: #P by 3 in the user's units; triangles: #T by 3 point ids; patchOfTriangle: #T ids into patchNames.
-  /// Throws InputError when there are no triangles, a coordinate is not finite, or an id is out of range.
+  /// points: #P by 3 in the user's units; triangles: #T by 3 point ids; patchOfTriangle: #T ids into
+  /// patchNames. Throws InputError when there are no triangles, a coordinate is not finite, or an id is out
+  /// of range.
   SurfaceModel(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
                const std::vector<Id>& patchOfTriangle, std::vector<std::string> patchNames);
   ~SurfaceModel();
@@ -44,8 +46,8 @@ class SurfaceModel {
   /// Equal for equal content; keys caches and recognises changed geometry.
   std::uint64_t contentHash() const { return hash_; }
 
-  /// Exact closest point; ties go to the smallest triangle id. seed, when given, must itself be a point of the model:
-  /// it only prunes the search and never changes the answer. Thread-safe.
+  /// Exact closest point; ties go to the smallest triangle id. seed, when given, must itself be a point of
+  /// the model: it only prunes the search and never changes the answer. Thread-safe.
   Closest closest(const Vec3& p, const Closest& seed = {}) const;
   /// Closest point on one triangle.
   Closest closestOnTriangle(const Vec3& p, Id triangle) const;
