@@ -318,7 +318,6 @@ def main(arguments):
         options.geometry = [EXAMPLE]
         options.feature_size = options.feature_size or EXAMPLE_FEATURE_SIZE
     clear_output(options)
-    import vtkmodules.vtkIOCore  # noqa: F401  the writers' base
     from projection_mesher import ProjectionMesherFilters as pm
     import mesh_report
     runner = Runner()

@@ -10,9 +10,10 @@ namespace {
 constexpr int kRings = 3;           // wall nodes this many edges from a target take part in the smoothing
 constexpr int kDistanceGroups = 4;  // eq 4-31
 // The rest in length scales: what counts as reached, how far a face may leave the geometry when a node
-// reaches a feature and when it is smoothed, and how near the nodes of a path may come.
+// reaches a feature, goes part of the way and is smoothed, and how near the nodes of a path may come.
 constexpr double kReached = 1e-3;
-constexpr double kSnapTolerance = 0.1;
+constexpr double kSnapTolerance = 0.5;  // the neighbours follow: a tight limit here leaves them all behind
+constexpr double kDriftTolerance = 0.1;
 constexpr double kSmoothTolerance = 0.02;
 constexpr double kCrowded = 0.2;
 
@@ -138,6 +139,10 @@ std::vector<Id> FeatureSnapper::missed() const {
   return rows;
 }
 
+void FeatureSnapper::releaseMissed() {
+  for (Id row : missed()) role_[row] = Role::Free;
+}
+
 void FeatureSnapper::snap(bool corners) {
   const Role role = corners ? Role::Corner : Role::Curve;
   std::vector<Id> open;
@@ -176,7 +181,7 @@ void FeatureSnapper::snapNode(Id row) {
   for (double part : {0.5, 0.25}) {
     const Vec3 between = field_.closest(from + part * (target_[row] - from)).point;
     if ((between - target_[row]).norm() < (from - target_[row]).norm() &&
-        tryMove(row, between, kSnapTolerance))
+        tryMove(row, between, kDriftTolerance))
       return;
   }
 }

@@ -2,9 +2,10 @@
 // Moves wall nodes onto their feature targets and relaxes the mesh around them (thesis 4.5, 4.7.2; part of
 // ResolveFeatures). Every move goes through the NodeMover, so the mesh stays valid.
 //
-// A node that cannot reach its target alone takes the lower end of its prism edge along. A move is kept only
-// when no wall face leaves the geometry: the representative points (eq 4-20) that it moves may be as far away
-// as before, or a small part of the length scale.
+// A node that cannot reach its target alone takes the lower end of its prism edge along. The representative
+// points (eq 4-20) that a move takes along may be as far from the geometry as before, or a tenth of the
+// length scale; half of it when the node reaches its feature, since its neighbours follow in the next
+// smoothing. A refused move is tried again only after something around it has moved.
 #pragma once
 
 #include "DistanceField.h"
@@ -30,6 +31,8 @@ class FeatureSnapper {
   void polish();
   /// Wall rows whose targets are not reached.
   std::vector<Id> missed() const;
+  /// Gives up the targets that were not reached: their nodes are smoothed along the geometry like any other.
+  void releaseMissed();
 
  private:
   enum class Role : std::uint8_t { Outside, Free, Curve, Corner };

@@ -148,7 +148,7 @@ std::vector<Id> amongSmallerCut(const OctreeBuilder& builder) {
       if (other == kNone || !builder.node(other).isCut()) continue;
       ++(builder.node(other).isLeaf() ? others : smaller);
     }
-    split[i] = smaller > others;
+    split[i] = 5 * smaller > 2 * (smaller + others);
   });
   std::vector<Id> chosen;
   for (Id i = 0; i < builder.size(); ++i)

@@ -26,7 +26,7 @@ struct OctreeDecomposeOptions {
   std::vector<std::pair<std::string, double>> patchSizes;  ///< patch name, largest cell on it
   double surfaceSize = 0;   ///< largest cell that touches the geometry; 0 = no limit but the criteria
   std::vector<RefineBox> boxes;
-  double normalAngle = 30;  ///< criteria 1, 2: degrees between normals within a cell that ask for refinement
+  double normalAngle = 40;  ///< criteria 1, 2: degrees between normals within a cell that ask for refinement
   double sharpAngle = 30;   ///< criterion 5: dihedral angle of sharp edges
   bool refineEdges = true;  ///< cells on sharp edges, patch interfaces and corners go to the finest level
   bool separate = true;     ///< criteria 3, 4: facing surfaces in one cell or in adjacent cells

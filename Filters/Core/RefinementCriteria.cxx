@@ -58,8 +58,11 @@ bool RefinementCriteria::sizeAsksFor(const OctreeBuilder& builder, const OctreeB
   return false;
 }
 
-// Criterion 5.
-bool RefinementCriteria::featureInside(const Box& box) const {
+// Criteria 5 and 7: a feature in the cell, or within one finest cell of it, so that the front has fine cells to either
+// side of the feature's own.
+bool RefinementCriteria::featureInside(Box box) const {
+  box.lo.array() -= finest_;
+  box.hi.array() += finest_;
   for (Id s : features_.segmentsNear(box)) {
     const FeatureSegment& segment = features_.segments()[s];
     if (touches(box, segment.a, segment.b)) return true;

@@ -29,7 +29,7 @@ class RefinementCriteria {
     bool split = false, cut = false;
   };
   bool sizeAsksFor(const OctreeBuilder& builder, const OctreeBuilder::Node& n) const;
-  bool featureInside(const Box& box) const;
+  bool featureInside(Box box) const;
   Summary look(const OctreeBuilder& builder, const OctreeBuilder::Node& n) const;
   bool facing(const Vec3& normalA, const Vec3& normalB, const Vec3& between) const;
   bool disagree(const Summary& a, const Summary& b) const;

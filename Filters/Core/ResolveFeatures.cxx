@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ResolveFeatures.h"
 
-#include <fmt/core.h>
 #include <tbb/parallel_for.h>
 
 #include "FeatureCoverage.h"
@@ -16,8 +15,8 @@ namespace {
 
 constexpr int kSteps = 4;  // snapping and relaxing after each tracing
 constexpr int kPolishSweeps = 2;
-constexpr float kMissPenalty =
-    0.3f;  // length scales a node counts as farther for each round it missed its target
+// Length scales a node counts as farther for each round it missed its target.
+constexpr float kMissPenalty = 0.3f;
 
 /// Traces and snaps; nodes that miss make room for others in the next round.
 void snapRounds(NodeMover& mover, const WallSurface& wall, const DistanceField& field,
@@ -25,19 +24,27 @@ void snapRounds(NodeMover& mover, const WallSurface& wall, const DistanceField& 
   const PolyMesh& mesh = mover.mesh();
   FeatureSnapper snapper(mover, wall, field, graph);
   std::vector<float> penalty(wall.nodes.size(), 0.0f);
+  std::size_t fewest = wall.nodes.size() + 1;
   const double steps = options.rounds * kSteps;
   for (int round = 0; round < options.rounds; ++round) {
     snapper.setTargets(traceFeatures(mesh, wall, graph, {}, penalty));
+    std::size_t before = wall.nodes.size();
     for (int step = 0; step < kSteps; ++step) {
       monitor.check(0.05 + 0.75 * (round * kSteps + step) / steps, "feature snapping");
       snapper.snap(false);
       snapper.snap(true);
       snapper.relax();
+      const std::size_t open = snapper.missed().size();
+      if (open >= before) break;
+      before = open;
     }
     const std::vector<Id> missed = snapper.missed();
-    if (missed.empty()) break;
+    if (missed.empty() || missed.size() >= fewest) break;
+    fewest = missed.size();
     for (Id row : missed) penalty[row] += kMissPenalty;
   }
+  snapper.releaseMissed();
+  snapper.relax();
   for (int sweep = 0; sweep < kPolishSweeps; ++sweep) {
     monitor.check(0.8 + 0.1 * sweep / kPolishSweeps, "polishing");
     snapper.polish();
@@ -52,7 +59,8 @@ FeatureOptions effective(FeatureOptions features, const PolyMesh& mesh) {
 }
 
 /// Wall rows that lie on a feature.
-std::vector<std::uint8_t> onFeatures(const PolyMesh& mesh, const WallSurface& wall, const FeatureGraph& graph) {
+std::vector<std::uint8_t> onFeatures(const PolyMesh& mesh, const WallSurface& wall,
+                                     const FeatureGraph& graph) {
   constexpr double kOn = 1e-3;  // length scales, as for reaching a target
   std::vector<std::uint8_t> on(wall.nodes.size(), 0);
   tbb::parallel_for(Id(0), wall.size(), [&](Id row) {

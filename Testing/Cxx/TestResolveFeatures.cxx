@@ -196,7 +196,11 @@ TEST(ResolveFeatures, LeavesSmoothShapesAlone) {
   resolveFeatures(mesh, field, {}, monitor, &report);
   expectValid(mesh);
   EXPECT_EQ(report.featureLength, 0);
-  EXPECT_EQ(mesh.points, before);
+  // Nothing but the fitting of the faces: small shifts of wall nodes.
+  for (std::size_t p = 0; p < before.size(); ++p) {
+    const double limit = mesh.base[p] == kNone ? 0.0 : 0.05 * mesh.finestSize;
+    EXPECT_LE((mesh.points[p] - before[p]).norm(), limit);
+  }
 }
 
 TEST(ResolveFeatures, SameForAnyNumberOfThreads) {
