@@ -18,13 +18,17 @@ constexpr double kSmallStep = 0.02;
 // Height of the wall prism the bases are led to, in units of the length scale: room for the layers, and near enough
 // that the octree cells below take up most of the stretch.
 constexpr double kPrismHeight = 0.4;
+constexpr int kFlatteningSweeps = 3;
+// A node farther than this from the geometry after projection, in length scales, is stuck; rounds to free such nodes.
+constexpr double kStuck = 0.02;
+constexpr int kFreeingRounds = 6;
 // Octree nodes within so many edges of the bases may move; the core beyond keeps its perfect cells.
 constexpr int kInnerRings = 2;
 
 class Projector {
  public:
   Projector(PolyMesh& mesh, const DistanceField& field, const ProjectOptions& options)
-      : mesh_(mesh), field_(field), options_(options), mover_(mesh, options.limits), wall_(wallSurface(mesh)) {
+      : mesh_(mesh), field_(field), options_(options), mover_(mesh, options.limits), wall_(wallSurface(mesh)), cellPoints_(cellPoints(mesh)) {
     std::vector<Id> bases;
     for (Id p : wall_.nodes) bases.push_back(mesh.base[p]);
     wallGroups_ = mover_.colour(wall_.nodes);
@@ -37,8 +41,13 @@ class Projector {
 
   void run(Monitor& monitor) {
     const int rounds = std::max(options_.rounds, 1);
+    for (int sweep = 0; sweep < kFlatteningSweeps; ++sweep) {
+      monitor.check(0, "front flattening");
+      flattenFront();
+      leadBases();
+    }
     for (int round = 0; round < rounds; ++round) {
-      monitor.check(double(round) / rounds, "projection");
+      monitor.check(0.9 * round / rounds, "projection");
       // The way is spread over the first half of the rounds, so that all parts of the front arrive together.
       const double part = 1.0 / std::max(1, rounds / 2 - round);
       drift(part);
@@ -46,8 +55,8 @@ class Projector {
       leadBases();
       if (round % 3 == 2) smoothInner();
     }
-    monitor.check(0.95, "projection");
-    for (int sweep = 0; sweep < 2; ++sweep) {
+    for (int round = 0; round < kFreeingRounds && freeStuck(); ++round) {
+      monitor.check(0.9 + 0.1 * round / kFreeingRounds, "freeing stuck nodes");
       drift(1);
       leadBases();
     }
@@ -63,6 +72,33 @@ class Projector {
     for (Id f : wall_.faces[wall_.rowOf[p]]) n += mover_.faceNormal(f);
     const double length = n.norm();
     return length > 0 ? Vec3(n / length) : n;
+  }
+
+  /// Mean of the centres of the wall faces around a node, weighted by area (so that hanging nodes on the edges do not
+  /// count), relative to the node; and the outward normal there. False where the faces have no area.
+  bool meanAround(Id row, Vec3& mean, Vec3& normal) const {
+    const Vec3& x = mesh_.points[wall_.nodes[row]];
+    mean = normal = Vec3::Zero();
+    double weight = 0;
+    for (Id f : wall_.faces[row]) {
+      const double area = mover_.faceNormal(f).norm();
+      mean += area * (mover_.faceCentre(f) - x);
+      weight += area;
+      normal += mover_.faceNormal(f);
+    }
+    if (!(weight > 0) || !(normal.norm() > 0)) return false;
+    mean /= weight;
+    normal.normalize();
+    return true;
+  }
+
+  // 4.5.1: smoothing flattens the front's stairs before it moves; a stair's riser has to lie down in the surface, and
+  // folds if it is still upright when it gets there.
+  void flattenFront() {
+    NodeMover::forEach(wallGroups_, [&](Id p) {
+      Vec3 mean, normal;
+      if (meanAround(wall_.rowOf[p], mean, normal)) mover_.drift(p, mesh_.points[p] + 0.5 * mean, 1);
+    });
   }
 
   // 4.6.2, front drifting: towards the closest point, part of the way.
@@ -94,17 +130,8 @@ class Projector {
     NodeMover::forEach(wallGroups_, [&](Id p) {
       const Id row = wall_.rowOf[p];
       const Vec3 x = mesh_.points[p];
-      Vec3 mean = Vec3::Zero(), n = Vec3::Zero();
-      double weight = 0;
-      for (Id f : wall_.faces[row]) {  // area-weighted face centres: independent of hanging nodes on the edges
-        const double area = mover_.faceNormal(f).norm();
-        mean += area * (mover_.faceCentre(f) - x);
-        weight += area;
-        n += mover_.faceNormal(f);
-      }
-      if (!(weight > 0) || !(n.norm() > 0)) return;
-      n.normalize();
-      mean /= weight;
+      Vec3 mean, n;
+      if (!meanAround(row, mean, n)) return;
       const Vec3 step = 0.5 * (mean - mean.dot(n) * n);
       if (step.norm() < kSmallStep * wall_.scale[row]) return;
       Vec3 target = x + step;
@@ -149,18 +176,41 @@ class Projector {
     });
   }
 
+  // A node short of the geometry is held by a cell at a limit, often by a single sheared prism. The points of its cells
+  // search around themselves for a place where the worst measure is better (4.5, second strategy). False when no node
+  // is stuck.
+  bool freeStuck() {
+    std::vector<Id> around;
+    for (Id row = 0; row < wall_.size(); ++row) {
+      if (distance_[row] < kStuck * wall_.scale[row]) continue;
+      for (Id c : mover_.cellsOf(wall_.nodes[row]))
+        around.insert(around.end(), cellPoints_[c].begin(), cellPoints_[c].end());
+    }
+    std::sort(around.begin(), around.end());
+    around.erase(std::unique(around.begin(), around.end()), around.end());
+    NodeMover::forEach(mover_.colour(around), [&](Id p) {
+      for (double step : {0.2, 0.07}) {
+        for (int k = 0; k < 6; ++k) {
+          Vec3 d = Vec3::Zero();
+          d[k / 2] = k % 2 ? step : -step;
+          mover_.improve(p, mesh_.points[p] + mesh_.finestSize * d);
+        }
+      }
+    });
+    return !around.empty();
+  }
+
   // Rings of nodes below the bases, by cells.
   void collectInner(const std::vector<Id>& bases) {
     std::vector<std::uint8_t> seen(mesh_.points.size(), 0);
     for (Id p : wall_.nodes) seen[p] = 1;
     std::vector<Id> ring = bases, inner;
     for (Id b : bases) seen[b] = 1;
-    const Csr<Id> points = cellPoints(mesh_);
     for (int k = 0; k < kInnerRings; ++k) {
       std::vector<Id> next;
       for (Id p : ring)
         for (Id c : mover_.cellsOf(p))
-          for (Id q : points[c])
+          for (Id q : cellPoints_[c])
             if (!seen[q]) {
               seen[q] = 1;
               next.push_back(q);
@@ -179,6 +229,7 @@ class Projector {
   WallSurface wall_;
   std::vector<std::vector<Id>> wallGroups_, baseGroups_, innerGroups_;
   std::vector<Id> rowOfBase_;
+  Csr<Id> cellPoints_;
   std::vector<double> distance_;  // of each wall node to the geometry, as its last drift left it
 };
 
