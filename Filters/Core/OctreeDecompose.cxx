@@ -2,7 +2,9 @@
 #include "OctreeDecompose.h"
 
 #include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <cmath>
@@ -117,42 +119,23 @@ void refineByCriteria(OctreeBuilder& builder, const RefinementCriteria& criteria
 // Criteria 7, 8: a cell the surface does not touch, beside a smaller one that it does, becomes as small, so that the
 // front follows the surface in cells of one size.
 std::vector<Id> besideSmallerCut(const OctreeBuilder& builder, int cells) {
-  std::vector<Id> chosen;
-  for (Id i = 0; i < builder.size(); ++i) {
+  tbb::enumerable_thread_specific<std::vector<Id>> found;
+  tbb::parallel_for(Id(0), builder.size(), [&](Id i) {
     const auto& n = builder.node(i);
-    if (!n.isLeaf() || !n.isCut()) continue;
+    if (!n.isLeaf() || !n.isCut()) return;
     for (int z = -cells; z <= cells; ++z)
       for (int y = -cells; y <= cells; ++y)
         for (int x = -cells; x <= cells; ++x) {
           const Id other = builder.neighbour(n, {x, y, z});
           if (other == kNone) continue;
           const auto& m = builder.node(other);
-          if (m.isLeaf() && !m.isCut() && m.level < n.level) chosen.push_back(other);
+          if (m.isLeaf() && !m.isCut() && m.level < n.level) found.local().push_back(other);
         }
-  }
-  std::sort(chosen.begin(), chosen.end());
-  chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
-  return chosen;
-}
-
-// A cell the surface crosses, most of whose neighbours on the surface are smaller, becomes as small: coarse islands
-// in a fine front are what the projection cannot straighten.
-std::vector<Id> amongSmallerCut(const OctreeBuilder& builder) {
-  std::vector<std::uint8_t> split(builder.size(), 0);
-  tbb::parallel_for(Id(0), builder.size(), [&](Id i) {
-    const auto& n = builder.node(i);
-    if (!n.isLeaf() || !n.isCut() || n.level == builder.brick().maxLevel) return;
-    int smaller = 0, others = 0;
-    for (int k = 0; k < 27; ++k) {
-      const Id other = k == 13 ? kNone : builder.neighbour(n, {k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1});
-      if (other == kNone || !builder.node(other).isCut()) continue;
-      ++(builder.node(other).isLeaf() ? others : smaller);
-    }
-    split[i] = 5 * smaller > 2 * (smaller + others);
   });
   std::vector<Id> chosen;
-  for (Id i = 0; i < builder.size(); ++i)
-    if (split[i]) chosen.push_back(i);
+  for (const auto& mine : found) chosen.insert(chosen.end(), mine.begin(), mine.end());
+  tbb::parallel_sort(chosen.begin(), chosen.end());
+  chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
   return chosen;
 }
 
@@ -167,10 +150,9 @@ Octree decompose(const SurfaceModel& model, const OctreeDecomposeOptions& option
   for (;;) {
     monitor.check(0.85, "balancing");
     builder.balance(options.cellsBetweenLevels);
-    std::vector<Id> more = amongSmallerCut(builder);
-    if (more.empty()) more = besideSmallerCut(builder, options.bufferCells);
-    if (more.empty()) break;
-    splitWithinBudget(builder, more, options);
+    const std::vector<Id> beside = besideSmallerCut(builder, options.bufferCells);
+    if (beside.empty()) break;
+    splitWithinBudget(builder, beside, options);
   }
   monitor.check(0.95, "collecting leaves");
   return builder.finish();

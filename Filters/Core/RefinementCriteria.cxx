@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "TriangleBox.h"
 
@@ -21,7 +22,7 @@ constexpr std::size_t kSample = 24;
 FeatureOptions featureOptions(const OctreeDecomposeOptions& o, double finest) {
   FeatureOptions f;
   f.sharpAngle = o.sharpAngle;
-  f.gapTolerance = 0.25 * finest;
+  f.gapTolerance = 0.5 * finest;
   return f;
 }
 
@@ -122,6 +123,52 @@ bool RefinementCriteria::disagree(const Summary& a, const Summary& b) const {
   return options_.separate && facing(a.normal, b.normal, b.centre - a.centre);
 }
 
+/// Calls body(place in the batch, or kNone for a coarser leaf) for each cut cell around batch[i].
+template <class Body>
+static void forCutNeighbours(const OctreeBuilder& builder, const std::vector<Id>& batch, std::size_t i,
+                             const Body& body) {
+  const auto& n = builder.node(batch[i]);
+  for (int k = 0; k < 27; ++k) {
+    const Id other = k == 13 ? kNone : builder.neighbour(n, {k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1});
+    if (other != kNone && builder.node(other).isCut())
+      body(builder.node(other).level == n.level ? other - batch.front() : kNone);
+  }
+}
+
+// A cell on the surface more than two fifths of whose neighbours on it will be split is split as well: coarse islands
+// and ragged borders in a fine front are what the projection cannot straighten. A straight border stays where it is
+// (three of eight neighbours); from a corner it would creep on, so there are only a few rounds.
+void RefinementCriteria::fillIslands(const OctreeBuilder& builder, const std::vector<Id>& batch,
+                                     std::vector<std::uint8_t>& split) {
+  std::vector<std::uint8_t> around(batch.size(), 0), finer(batch.size(), 0);
+  const auto asks = [&](std::size_t i) { return !split[i] && 5 * finer[i] > 2 * around[i]; };
+  tbb::parallel_for(std::size_t(0), batch.size(), [&](std::size_t i) {
+    if (split[i] || !builder.node(batch[i]).isCut()) return;
+    forCutNeighbours(builder, batch, i, [&](Id place) {
+      ++around[i];
+      finer[i] += place != kNone && split[place];
+    });
+  });
+  constexpr int kRounds = 3;
+  std::vector<std::size_t> asking;
+  for (std::size_t i = 0; i < batch.size(); ++i)
+    if (asks(i)) asking.push_back(i);
+  for (int round = 0; round < kRounds && !asking.empty(); ++round) {
+    for (std::size_t i : asking) split[i] = 1;
+    std::vector<std::size_t> next;
+    for (std::size_t i : asking)
+      forCutNeighbours(builder, batch, i, [&](Id place) {
+        if (place == kNone || split[place]) return;
+        ++finer[place];
+        next.push_back(place);
+      });
+    std::sort(next.begin(), next.end());
+    next.erase(std::unique(next.begin(), next.end()), next.end());
+    asking.clear();
+    std::copy_if(next.begin(), next.end(), std::back_inserter(asking), asks);
+  }
+}
+
 std::vector<Id> RefinementCriteria::select(const OctreeBuilder& builder, const std::vector<Id>& batch) const {
   std::vector<Summary> summary(batch.size());
   tbb::parallel_for(std::size_t(0), batch.size(),
@@ -140,6 +187,7 @@ std::vector<Id> RefinementCriteria::select(const OctreeBuilder& builder, const s
       split[i] = s.cut && !s.split && disagree(summary[i], s);
     }
   });
+  fillIslands(builder, batch, split);
   std::vector<Id> chosen;
   for (std::size_t i = 0; i < batch.size(); ++i)
     if (split[i]) chosen.push_back(batch[i]);

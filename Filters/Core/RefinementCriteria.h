@@ -33,6 +33,7 @@ class RefinementCriteria {
   Summary look(const OctreeBuilder& builder, const OctreeBuilder::Node& n) const;
   bool facing(const Vec3& normalA, const Vec3& normalB, const Vec3& between) const;
   bool disagree(const Summary& a, const Summary& b) const;
+  static void fillIslands(const OctreeBuilder& builder, const std::vector<Id>& batch, std::vector<std::uint8_t>& split);
 
   const SurfaceModel& model_;
   const OctreeDecomposeOptions& options_;

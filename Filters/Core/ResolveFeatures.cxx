@@ -51,9 +51,9 @@ void snapRounds(NodeMover& mover, const WallSurface& wall, const DistanceField& 
   }
 }
 
-/// Unstitched patches meet within a fraction of a cell; wider gaps are the user's to name.
+/// Gaps below half a cell are seams of unstitched patches: the octree has sealed them. Wider ones are the user's to name.
 FeatureOptions effective(FeatureOptions features, const PolyMesh& mesh) {
-  constexpr double kGap = 0.25;
+  constexpr double kGap = 0.5;
   if (features.gapTolerance <= 0) features.gapTolerance = kGap * mesh.finestSize;
   return features;
 }

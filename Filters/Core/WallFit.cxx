@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "WallFit.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,8 +11,11 @@ namespace {
 
 // In units of the finest cell: how far a node may leave the geometry, and the distance beyond which a point's error
 // is no chord's but a feature's that no shift of nodes would mend.
-constexpr double kMostShift = 0.045, kMostChord = 0.12;
+constexpr double kMostShift = 0.045, kMostChord = 0.12, kFar = 0.05;
 constexpr int kSweeps = 2;
+// Search along the surface: steps in length scales, and the gain that makes a new place worth it.
+constexpr double kSteps[] = {0.3, 0.12};
+constexpr double kGain = 0.9;
 constexpr std::size_t kMostPoints = 48;
 
 /// The representative points around a node: itself, the middles of its edges on the wall, the centres of its faces.
@@ -40,6 +44,29 @@ class WallFitter {
     if (std::abs(shift) < 0.002 * unit_) return;
     const Vec3 old = mover_.point(p);
     if (mover_.move(p, old + shift * n) && look(p, n, nullptr, nullptr, nullptr) >= before) mover_.move(p, old);
+  }
+
+  // Maximum approximation (4.7.5): where a face stays off the geometry, often at an edge that found no path, the node
+  // tries places around it on the surface.
+  void search(Id p) {
+    const Id row = wall_.rowOf[p];
+    Vec3 n = Vec3::Zero();
+    for (Id f : wall_.faces[row]) n += mover_.faceNormal(f);
+    double best = look(p, n, nullptr, nullptr, nullptr);
+    if (!(n.norm() > 0) || best < std::pow(kFar, 4)) return;
+    const Vec3 u = n.unitOrthogonal(), v = n.normalized().cross(u);
+    for (double step : kSteps)
+      for (int k = 0; k < 8; ++k) {
+        const double angle = k * 0.25 * 3.14159265358979323846;
+        const Vec3 old = mover_.point(p);
+        const Vec3 to = old + step * wall_.scale[row] * (std::cos(angle) * u + std::sin(angle) * v);
+        if (!mover_.move(p, field_.closest(to).point)) continue;
+        const double now = look(p, n, nullptr, nullptr, nullptr);
+        if (now < kGain * best)
+          best = now;
+        else
+          mover_.move(p, old);
+      }
   }
 
  private:
@@ -83,7 +110,10 @@ void fitWall(NodeMover& mover, const WallSurface& wall, const DistanceField& fie
     if (!keep[row]) free.push_back(wall.nodes[row]);
   const auto groups = mover.colour(free);
   WallFitter fitter(mover, wall, field);
-  for (int sweep = 0; sweep < kSweeps; ++sweep) NodeMover::forEach(groups, [&](Id p) { fitter.fit(p); });
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    NodeMover::forEach(groups, [&](Id p) { fitter.search(p); });
+    NodeMover::forEach(groups, [&](Id p) { fitter.fit(p); });
+  }
 }
 
 }  // namespace pm

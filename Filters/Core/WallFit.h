@@ -13,6 +13,7 @@
 
 namespace pm {
 
+/// Passes: nodes beside faces that are off the geometry search along the surface for a better place; then all shift.
 /// keep: #W rows of `wall` whose nodes stay where they are (they lie on features). A shift is at most 0.045 of the
 /// finest cell and kept only if it is valid and the faces' representative points get nearer to the geometry.
 void fitWall(NodeMover& mover, const WallSurface& wall, const DistanceField& field,
