@@ -16,7 +16,7 @@ import time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 EXAMPLE = os.path.join(HERE, "..", "..", "Testing", "Data", "pipe_junction_dirty.stl")
-EXAMPLE_FEATURE_SIZE = 0.0025
+EXAMPLE_FEATURE_SIZE = 0.003
 STAGES = ("OctreeDecompose", "PaintFront", "DummyLayer", "Project", "ResolveFeatures", "BoundaryRefine")
 SHORT_NAMES = ("octree", "front", "layer", "project", "features", "refine")
 
@@ -256,8 +256,6 @@ def mesh_geometry(pm, runner, options, geometry):
     filters = make_filters(pm, options)
     grid = None
     for name, stage in zip(STAGES, filters):
-        if name == "ResolveFeatures":  # gaps that the octree has sealed are seams
-            stage.SetGapTolerance(0.5 * grid.GetFieldData().GetArray("FinestSize").GetValue(0))
         inputs = [data for data in (grid, geometry) if data is not None]
         for port in range(stage.GetNumberOfInputPorts()):
             stage.SetInputDataObject(port, inputs[port])

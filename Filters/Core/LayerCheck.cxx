@@ -76,11 +76,11 @@ LayerCheck::LayerCheck(const PolyMesh& mesh, const LayerColumns& columns, const 
       faces.row.assign(mesh.faces[f].begin(), mesh.faces[f].end());
       faces.add(mesh.owner[f] == beside[i] ? 1 : -1);
     }
-    otherCentres_[beside[i]] = faces.measure(points).centre;
+    otherCentres_[beside[i]] = CellCentres(faces.measure(points));
   });
 }
 
-const Vec3& LayerCheck::centre(Id cell, Id layer) const {
+const LayerCheck::CellCentres& LayerCheck::centre(Id cell, Id layer) const {
   const Id column = columns_.columnOf(cell);
   return column == kNone ? otherCentres_[cell] : centres_[centreStart_[column] + layer - 1];
 }
@@ -106,19 +106,19 @@ bool LayerCheck::measureColumn(Id column) {
       faces.add(level < layer ? 1 : -1);
     }
     const CellMeasures m = faces.measure(points_);
-    centres_[centreStart_[column] + layer - 1] = m.centre;
+    centres_[centreStart_[column] + layer - 1] = CellCentres(m);
     // A hair above zero, so that rounding in another program does not find it negative.
-    good = good && m.volume > 0 && m.minTet > std::max(minTet_, 1e-6 * m.volume);
+    good = good && m.volume > 0 && std::min(m.minTet, m.minPyramid) > std::max(minTet_, 1e-6 * m.volume);
   }
   return good;
 }
 
-bool LayerCheck::holds(const std::vector<Id>& row, const FaceMeasures& face, const Vec3& owner,
-                       const Vec3* neighbour) const {
+bool LayerCheck::holds(const std::vector<Id>& row, const FaceMeasures& face, const CellCentres& owner,
+                       const CellCentres* neighbour) const {
   const bool inner = neighbour != nullptr;
-  const Vec3 direction = (inner ? *neighbour : face.centre) - owner;
-  const double skew = inner ? internalSkewness(points_, span(row), face, owner, *neighbour)
-                            : boundarySkewness(points_, span(row), face, owner);
+  const Vec3 direction = (inner ? neighbour->thesis : face.centre) - owner.thesis;
+  const double skew = inner ? internalSkewness(points_, span(row), face, owner.foam, neighbour->foam)
+                            : boundarySkewness(points_, span(row), face, owner.foam);
   return face.warpage <= limits_.maxWarpage &&
          faceAngle(face.normal, direction) <= (inner ? limits_.maxAngleInternal : limits_.maxAngleBoundary) &&
          skew <= (inner ? limits_.maxSkewInternal : limits_.maxSkewBoundary);
@@ -143,7 +143,7 @@ bool LayerCheck::faceHolds(Id face) const {
   const Id pieces = columns_.pieces(face);
   for (Id piece = 1; piece <= pieces; ++piece) {
     columns_.pieceRow(face, piece, row);
-    const Vec3* neighbour = inner ? &centre(next, columns_.layerAt(next, face, piece)) : nullptr;
+    const CellCentres* neighbour = inner ? &centre(next, columns_.layerAt(next, face, piece)) : nullptr;
     const FaceMeasures m = measureFace(points_, span(row));
     if (!holds(row, m, centre(own, columns_.layerAt(own, face, piece)), neighbour)) return false;
   }

@@ -25,9 +25,15 @@ class LayerCheck {
   bool measureColumn(Id column);
   bool capsHold(Id column) const;
   bool faceHolds(Id face) const;
-  bool holds(const std::vector<Id>& row, const FaceMeasures& face, const Vec3& owner,
-             const Vec3* neighbour) const;
-  const Vec3& centre(Id cell, Id layer) const;
+  /// A cell's centre as eq 4-17 has it, for angles, and as OpenFOAM has it, for skewness.
+  struct CellCentres {
+    CellCentres() = default;
+    explicit CellCentres(const CellMeasures& m) : thesis(m.centre), foam(m.foamCentre) {}
+    Vec3 thesis = Vec3::Zero(), foam = Vec3::Zero();
+  };
+  bool holds(const std::vector<Id>& row, const FaceMeasures& face, const CellCentres& owner,
+             const CellCentres* neighbour) const;
+  const CellCentres& centre(Id cell, Id layer) const;
   void lowerAround(Id column, std::vector<Id>& lower) const;
   std::vector<Id> facesAround(const std::vector<Id>& changed);
 
@@ -37,8 +43,8 @@ class LayerCheck {
   QualityLimits limits_;
   double minTet_;
   std::vector<Id> centreStart_;  // of each column's layers in centres_
-  std::vector<Vec3> centres_;
-  std::vector<Vec3> otherCentres_;  // #C, set for cells beside columns
+  std::vector<CellCentres> centres_;
+  std::vector<CellCentres> otherCentres_;  // #C, set for cells beside columns
   std::vector<std::uint8_t> seen_;  // #F scratch of facesAround
 };
 

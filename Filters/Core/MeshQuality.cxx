@@ -194,10 +194,12 @@ MeshMeasures measure(const PolyMesh& mesh) {
       const FaceMeasures& face = m.faces[f];
       const Vec3& own = m.cells[mesh.owner[f]].centre;
       const Vec3& next = f < internal ? m.cells[mesh.neighbour[f]].centre : face.centre;
+      const Vec3& foamOwn = m.cells[mesh.owner[f]].foamCentre;
+      const Vec3& foamNext = f < internal ? m.cells[mesh.neighbour[f]].foamCentre : face.centre;
       m.faceAngle[f] = static_cast<float>(faceAngle(face.normal, next - own));
       m.faceSkew[f] =
-          static_cast<float>(f < internal ? internalSkewness(mesh.points, mesh.faces[f], face, own, next)
-                                          : boundarySkewness(mesh.points, mesh.faces[f], face, own));
+          static_cast<float>(f < internal ? internalSkewness(mesh.points, mesh.faces[f], face, foamOwn, foamNext)
+                                          : boundarySkewness(mesh.points, mesh.faces[f], face, foamOwn));
     }
   });
   return m;

@@ -13,20 +13,20 @@ namespace pm {
 /// Table 5-1, eqs 4-21..4-28, and checkMesh's criteria. Angles in degrees; volumes in units of finestSize^3.
 struct QualityLimits {
   double minVolume = 0.01;
-  double minTet = 0.0;          ///< central tetrahedra
+  double minTet = 0.0;          ///< central tetrahedra, and OpenFOAM's face pyramids
   double minEtaInternal = 0.1;  ///< face degradation
   double minEtaBoundary = 0.1;
   double maxAngleInternal = 70;  ///< face normal against the line between cell centres
   double maxAngleBoundary = 72;
   double maxWarpage = 72;
   double maxSkewInternal = 3.8;  ///< OpenFOAM's definition; checkMesh fails at 4
-  double maxSkewBoundary = 19;   ///< checkMesh fails at 20
+  double maxSkewBoundary = 3.8;  ///< checkMesh draws no line between the two
 };
 
 /// Worst values found in a mesh.
 struct QualitySummary {
-  double minVolume = 0, minTet = 0,
-         totalVolume = 0;  ///< minVolume, minTet in finestSize^3; totalVolume as is
+  double minVolume = 0, minTet = 0, minPyramid = 0;  ///< in finestSize^3
+  double totalVolume = 0;                            ///< in the geometry's units
   double minEtaInternal = 1, minEtaBoundary = 1;
   double maxAngleInternal = 0, maxAngleBoundary = 0, maxWarpage = 0;
   double maxSkewInternal = 0, maxSkewBoundary = 0;
@@ -48,6 +48,8 @@ struct CellMeasures {
   Vec3 centre = Vec3::Zero();  ///< eq 4-17
   double volume = 0;           ///< eq 4-19
   double minTet = 0;           ///< smallest central tetrahedron about centre, eq 4-22
+  Vec3 foamCentre = Vec3::Zero();  ///< OpenFOAM's cell centre: the faces' pyramids about the mean of their centres
+  double minPyramid = 0;           ///< smallest pyramid of a face over foamCentre; checkMesh fails below 0
 };
 
 /// Different points of each cell, ascending; what eq 4-16 averages.
@@ -66,7 +68,7 @@ CellMeasures measureCell(const PolyMesh& mesh, Id cell, Span<Id> facesOfCell, Sp
 
 /// Degrees between a face's normal and a direction, eqs 4-25, 4-26; 180 when either has no length.
 double faceAngle(const Vec3& normal, const Vec3& direction);
-/// OpenFOAM's skewness of an internal and of a boundary face; the centres are those of eq 4-17.
+/// OpenFOAM's skewness of an internal and of a boundary face; the centres are the cells' foamCentre.
 double internalSkewness(const std::vector<Vec3>& points, Span<Id> row, const FaceMeasures& face,
                         const Vec3& ownerCentre, const Vec3& neighbourCentre);
 double boundarySkewness(const std::vector<Vec3>& points, Span<Id> row, const FaceMeasures& face,
@@ -88,6 +90,44 @@ std::string describeViolations(const PolyMesh& mesh, const MeshMeasures& measure
 
 // ---- implementation of the templates
 // ------------------------------------------------------------------------------
+
+/// OpenFOAM's view of a cell, as its primitiveMesh computes it: foamCentre and minPyramid.
+template <class ForEachFace>
+void measurePyramids(const std::vector<Vec3>& points, const Vec3& origin, const ForEachFace& forEachFace,
+                     CellMeasures& cell) {
+  Vec3 estimate = Vec3::Zero();
+  double count = 0;
+  forEachFace([&](Span<Id>, int, const Vec3& faceCentre) {
+    estimate += faceCentre - origin;
+    ++count;
+  });
+  estimate /= count;
+  // Sums over the faces as N: area vectors out of the cell.
+  const auto forEachPyramid = [&](const auto& body) {
+    forEachFace([&](Span<Id> row, int sign, const Vec3& faceCentre) {
+      Vec3 twice = Vec3::Zero(), a = points[row[row.size() - 1]] - faceCentre;
+      for (Id p : row) {
+        const Vec3 b = points[p] - faceCentre;
+        twice += a.cross(b);
+        a = b;
+      }
+      body(Vec3(0.5 * sign * twice), Vec3(faceCentre - origin));
+    });
+  };
+  double volume = 0;
+  Vec3 moment = Vec3::Zero();
+  forEachPyramid([&](const Vec3& area, const Vec3& at) {
+    const double pyramid = area.dot(at - estimate);
+    volume += pyramid;
+    moment += pyramid * (0.75 * at + 0.25 * estimate);
+  });
+  const Vec3 centre = volume != 0 ? Vec3(moment / volume) : estimate;
+  cell.minPyramid = std::numeric_limits<double>::infinity();
+  forEachPyramid([&](const Vec3& area, const Vec3& at) {
+    cell.minPyramid = std::min(cell.minPyramid, area.dot(at - centre) / 3);
+  });
+  cell.foamCentre = origin + centre;
+}
 
 template <class ForEachFace>
 CellMeasures measureCell(const std::vector<Vec3>& points, Span<Id> pointsOfCell,
@@ -111,6 +151,7 @@ CellMeasures measureCell(const std::vector<Vec3>& points, Span<Id> pointsOfCell,
     });
   };
   CellMeasures cell;
+  measurePyramids(points, origin, forEachFace, cell);
   Vec3 moment = Vec3::Zero();
   forEachTet(average, [&](double tet, const Vec3& a, const Vec3& b, const Vec3& c) {
     cell.volume += tet;

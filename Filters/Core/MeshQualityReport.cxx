@@ -69,7 +69,7 @@ void scan(Criterion& criterion, std::vector<std::uint8_t>& outside, const Value&
   }
 }
 
-enum { kVolume, kTet, kOpen, kEtaIn, kEtaOut, kAngleIn, kAngleOut, kWarp, kSkewIn, kSkewOut };
+enum { kVolume, kTet, kPyramid, kOpen, kEtaIn, kEtaOut, kAngleIn, kAngleOut, kWarp, kSkewIn, kSkewOut };
 
 struct Scan {
   std::vector<Criterion> criteria;
@@ -82,6 +82,7 @@ Scan scanAll(const PolyMesh& mesh, const MeshMeasures& m, const QualityLimits& l
   Scan s;
   s.criteria = {{"cells", "volume in finest cells", false, limits.minVolume, 0, cells},
                 {"cells", "smallest central tetrahedron in finest cells", false, limits.minTet, 0, cells},
+                {"cells", "smallest face pyramid in finest cells", false, limits.minTet, 0, cells},
                 {"cells", "openness", true, kClosed, 0, cells},
                 {"internal faces", "degradation", false, limits.minEtaInternal, 0, internal},
                 {"boundary faces", "degradation", false, limits.minEtaBoundary, internal, faces},
@@ -93,6 +94,7 @@ Scan scanAll(const PolyMesh& mesh, const MeshMeasures& m, const QualityLimits& l
   std::vector<std::uint8_t> badCell(cells, 0), badFace(faces, 0);
   scan(s.criteria[kVolume], badCell, [&](Id c) { return m.cells[c].volume / unit; });
   scan(s.criteria[kTet], badCell, [&](Id c) { return m.cells[c].minTet / unit; });
+  scan(s.criteria[kPyramid], badCell, [&](Id c) { return m.cells[c].minPyramid / unit; });
   scan(s.criteria[kOpen], badCell, [&](Id c) { return m.openness[c]; });
   for (int i : {kEtaIn, kEtaOut}) scan(s.criteria[i], badFace, [&](Id f) { return m.faces[f].eta; });
   for (int i : {kAngleIn, kAngleOut}) scan(s.criteria[i], badFace, [&](Id f) { return m.faceAngle[f]; });
@@ -113,6 +115,7 @@ QualitySummary summarise(const PolyMesh& mesh, const MeshMeasures& measures, con
   };
   take(q.minVolume, kVolume);
   take(q.minTet, kTet);
+  take(q.minPyramid, kPyramid);
   take(q.maxOpenness, kOpen);
   take(q.minEtaInternal, kEtaIn);
   take(q.minEtaBoundary, kEtaOut);

@@ -61,14 +61,14 @@ CellMeasures NodeMover::cellNow(Id c) const {
 // Angle and skewness of a face from the current centres.
 void NodeMover::relate(Id f) {
   FaceState& s = faces_[f];
-  const Vec3& own = cells_[mesh_.owner[f]].centre;
+  const CellMeasures& own = cells_[mesh_.owner[f]];
   if (f < mesh_.internalFaces()) {
-    const Vec3& next = cells_[mesh_.neighbour[f]].centre;
-    s.cosAngle = cosine(s.shape.normal, next - own);
-    s.skew = internalSkewness(mesh_.points, mesh_.faces[f], s.shape, own, next);
+    const CellMeasures& next = cells_[mesh_.neighbour[f]];
+    s.cosAngle = cosine(s.shape.normal, next.centre - own.centre);
+    s.skew = internalSkewness(mesh_.points, mesh_.faces[f], s.shape, own.foamCentre, next.foamCentre);
   } else {
-    s.cosAngle = cosine(s.shape.normal, s.shape.centre - own);
-    s.skew = boundarySkewness(mesh_.points, mesh_.faces[f], s.shape, own);
+    s.cosAngle = cosine(s.shape.normal, s.shape.centre - own.centre);
+    s.skew = boundarySkewness(mesh_.points, mesh_.faces[f], s.shape, own.foamCentre);
   }
 }
 
@@ -88,7 +88,8 @@ bool NodeMover::faceAngleHolds(Id f, const FaceState& old) const {
 }
 
 bool NodeMover::cellHolds(const CellMeasures& now, const CellMeasures& old) const {
-  return (now.volume >= minVolume_ || now.volume >= old.volume) && (now.minTet >= minTet_ || now.minTet >= old.minTet);
+  return (now.volume >= minVolume_ || now.volume >= old.volume) && (now.minTet >= minTet_ || now.minTet >= old.minTet) &&
+         (now.minPyramid >= minTet_ || now.minPyramid >= old.minPyramid);
 }
 
 double NodeMover::badnessOfFace(const FaceState& s, bool internal) const {
@@ -103,7 +104,7 @@ double NodeMover::badnessOfFace(const FaceState& s, bool internal) const {
 double NodeMover::badnessOfCell(const CellMeasures& c) const {
   const double size = std::max(c.volume, minVolume_);
   // The mean central tetrahedron of a hexahedron is 1/24 of it; one of no volume is at the limit.
-  const double tet = 1 - 24 * c.minTet / size;
+  const double tet = 1 - 24 * std::min(c.minTet, c.minPyramid) / size;
   return std::max(minVolume_ > 0 && c.volume < minVolume_ ? 2 - c.volume / minVolume_ : 0.0, tet);
 }
 
