@@ -12,10 +12,10 @@ namespace {
 // In units of the finest cell: how far a node may leave the geometry, and the distance beyond which a point's error
 // is no chord's but a feature's that no shift of nodes would mend.
 constexpr double kMostShift = 0.045, kMostChord = 0.12, kFar = 0.05;
-constexpr int kSweeps = 2;
+constexpr int kFitSweeps = 1, kSearchSweeps = 3;
 // Search along the surface: steps in length scales, and the gain that makes a new place worth it.
-constexpr double kSteps[] = {0.3, 0.12};
-constexpr double kGain = 0.9;
+constexpr double kSteps[] = {0.5, 0.25, 0.1};
+constexpr double kGain = 0.95;
 constexpr std::size_t kMostPoints = 48;
 
 /// The representative points around a node: itself, the middles of its edges on the wall, the centres of its faces.
@@ -110,7 +110,9 @@ void fitWall(NodeMover& mover, const WallSurface& wall, const DistanceField& fie
     if (!keep[row]) free.push_back(wall.nodes[row]);
   const auto groups = mover.colour(free);
   WallFitter fitter(mover, wall, field);
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+  // What the fit alone settles (chords of smooth surfaces) is no reason to wander along the surface.
+  for (int sweep = 0; sweep < kFitSweeps; ++sweep) NodeMover::forEach(groups, [&](Id p) { fitter.fit(p); });
+  for (int sweep = 0; sweep < kSearchSweeps; ++sweep) {
     NodeMover::forEach(groups, [&](Id p) { fitter.search(p); });
     NodeMover::forEach(groups, [&](Id p) { fitter.fit(p); });
   }
