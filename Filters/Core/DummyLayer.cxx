@@ -178,14 +178,14 @@ std::vector<Id> pointsInTrouble(const PolyMesh& mesh, const NodeMover& mover) {
 // Where the ideal directions give a prism outside the limits, points try small steps in all directions for a better
 // one: the layer's step 2 (Fig. 4-7), by search instead of by rule.
 void relax(PolyMesh& mesh, const QualityLimits& limits, Monitor& monitor) {
-  NodeMover mover(mesh, limits);
+  NodeMover mover(mesh, limits, &monitor);
   constexpr int kRounds = 12;
   for (int round = 0; round < kRounds; ++round) {
     monitor.check(0.3 + 0.6 * round / kRounds, "layer optimisation");
     const std::vector<Id> points = pointsInTrouble(mesh, mover);
     if (points.empty()) return;
     const auto groups = mover.colour(points);
-    NodeMover::forEach(groups, [&](Id p) {
+    mover.forEach(groups, [&](Id p) {
       const Id base = mesh.base[p];
       const double reach = base != kNone ? (mesh.points[p] - mesh.points[base]).norm() : 0.15 * mesh.finestSize;
       for (double step = 0.4 * reach; step > 0.04 * reach; step *= 0.5) {

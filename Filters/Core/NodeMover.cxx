@@ -33,8 +33,9 @@ struct NodeMover::Touched {
   std::vector<Vec3> oldPoints;
 };
 
-NodeMover::NodeMover(PolyMesh& mesh, const QualityLimits& limits)
+NodeMover::NodeMover(PolyMesh& mesh, const QualityLimits& limits, const Monitor* monitor)
     : mesh_(mesh),
+      monitor_(monitor),
       limits_(limits),
       cosInternal_(std::cos(limits.maxAngleInternal * kDegree)),
       cosBoundary_(std::cos(limits.maxAngleBoundary * kDegree)),
@@ -132,6 +133,25 @@ void NodeMover::gather(const Id* points, std::size_t count, Touched& t) const {
   sortUnique(t.faces);
 }
 
+// The worst measure got better; or it stayed (two faces of a symmetric prism share it) and what is over the limits shrank.
+bool NodeMover::isBetter(const Touched& t) const {
+  double before = 0, after = 0, excessBefore = 0, excessAfter = 0;
+  const auto add = [](double badness, double& worst, double& excess) {
+    worst = std::max(worst, badness);
+    excess += std::max(0.0, badness - 1);
+  };
+  for (std::size_t i = 0; i < t.faces.size(); ++i) {
+    const bool internal = t.faces[i] < mesh_.internalFaces();
+    add(badnessOfFace(t.oldFaces[i], internal), before, excessBefore);
+    add(badnessOfFace(faces_[t.faces[i]], internal), after, excessAfter);
+  }
+  for (std::size_t i = 0; i < t.cells.size(); ++i) {
+    add(badnessOfCell(t.oldCells[i]), before, excessBefore);
+    add(badnessOfCell(cells_[t.cells[i]]), after, excessAfter);
+  }
+  return after < before || (after == before && excessAfter < excessBefore);
+}
+
 bool NodeMover::attempt(const Id* points, const Vec3* targets, std::size_t count, bool mustImprove) {
   thread_local Touched t;
   t.oldPoints.clear();
@@ -167,18 +187,7 @@ bool NodeMover::attempt(const Id* points, const Vec3* targets, std::size_t count
       relate(t.faces[i]);
       if (!faceAngleHolds(t.faces[i], t.oldFaces[i])) return false;
     }
-    if (!mustImprove) return true;
-    double before = 0, after = 0;
-    for (std::size_t i = 0; i < t.faces.size(); ++i) {
-      const bool internal = t.faces[i] < mesh_.internalFaces();
-      before = std::max(before, badnessOfFace(t.oldFaces[i], internal));
-      after = std::max(after, badnessOfFace(faces_[t.faces[i]], internal));
-    }
-    for (std::size_t i = 0; i < t.cells.size(); ++i) {
-      before = std::max(before, badnessOfCell(t.oldCells[i]));
-      after = std::max(after, badnessOfCell(cells_[t.cells[i]]));
-    }
-    return after < before;
+    return !mustImprove || isBetter(t);
   };
   if (holds()) return true;
   for (std::size_t i = 0; i < count; ++i) mesh_.points[points[i]] = t.oldPoints[i];

@@ -17,7 +17,8 @@ namespace pm {
 class NodeMover {
  public:
   /// Points move in place. The topology must not change while the mover lives.
-  NodeMover(PolyMesh& mesh, const QualityLimits& limits);
+  /// A monitor makes forEach() stop soon after an abort.
+  NodeMover(PolyMesh& mesh, const QualityLimits& limits, const Monitor* monitor = nullptr);
 
   /// Moves p to target (its fixed coordinates stay); true when kept.
   bool move(Id p, const Vec3& target) { return attempt(&p, &target, 1, false); }
@@ -39,13 +40,16 @@ class NodeMover {
   /// Groups of points whose moves (a wall point's together with its base) touch nothing in common: within a group
   /// they may run in parallel, with the same result for any number of threads. Greedy, in the order given.
   std::vector<std::vector<Id>> colour(const std::vector<Id>& points) const;
-  /// Calls body(point) for every point, group by group, the points of a group in parallel.
+  /// Calls body(point) for every point, group by group, the points of a group in parallel. Throws AbortError between
+  /// groups when the monitor says so.
   template <class Body>
-  static void forEach(const std::vector<std::vector<Id>>& groups, const Body& body) {
-    for (const auto& group : groups)
+  void forEach(const std::vector<std::vector<Id>>& groups, const Body& body) const {
+    for (const auto& group : groups) {
+      if (monitor_ && monitor_->aborted()) throw AbortError("Stopped on request.");
       tbb::parallel_for(tbb::blocked_range<std::size_t>(0, group.size(), 16), [&](const auto& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) body(group[i]);
       });
+    }
   }
 
   const PolyMesh& mesh() const { return mesh_; }
@@ -66,6 +70,7 @@ class NodeMover {
   bool attempt(const Id* points, const Vec3* targets, std::size_t count, bool mustImprove);
   void gather(const Id* points, std::size_t count, Touched& t) const;
   void relate(Id f);
+  bool isBetter(const Touched& t) const;
   bool faceShapeHolds(Id f, const FaceState& old) const;
   bool faceAngleHolds(Id f, const FaceState& old) const;
   bool cellHolds(const CellMeasures& now, const CellMeasures& old) const;
@@ -74,6 +79,7 @@ class NodeMover {
   CellMeasures cellNow(Id c) const;
 
   PolyMesh& mesh_;
+  const Monitor* monitor_;
   QualityLimits limits_;
   double cosInternal_, cosBoundary_, minVolume_, minTet_;
   std::vector<FaceState> faces_;

@@ -27,8 +27,8 @@ constexpr int kInnerRings = 2;
 
 class Projector {
  public:
-  Projector(PolyMesh& mesh, const DistanceField& field, const ProjectOptions& options)
-      : mesh_(mesh), field_(field), options_(options), mover_(mesh, options.limits), wall_(wallSurface(mesh)), cellPoints_(cellPoints(mesh)) {
+  Projector(PolyMesh& mesh, const DistanceField& field, const ProjectOptions& options, const Monitor& monitor)
+      : mesh_(mesh), field_(field), options_(options), mover_(mesh, options.limits, &monitor), wall_(wallSurface(mesh)), cellPoints_(cellPoints(mesh)) {
     std::vector<Id> bases;
     for (Id p : wall_.nodes) bases.push_back(mesh.base[p]);
     wallGroups_ = mover_.colour(wall_.nodes);
@@ -95,7 +95,7 @@ class Projector {
   // 4.5.1: smoothing flattens the front's stairs before it moves; a stair's riser has to lie down in the surface, and
   // folds if it is still upright when it gets there.
   void flattenFront() {
-    NodeMover::forEach(wallGroups_, [&](Id p) {
+    mover_.forEach(wallGroups_, [&](Id p) {
       Vec3 mean, normal;
       if (meanAround(wall_.rowOf[p], mean, normal)) mover_.drift(p, mesh_.points[p] + 0.5 * mean, 1);
     });
@@ -103,7 +103,7 @@ class Projector {
 
   // 4.6.2, front drifting: towards the closest point, part of the way.
   void drift(double part) {
-    NodeMover::forEach(wallGroups_, [&](Id p) {
+    mover_.forEach(wallGroups_, [&](Id p) {
       const Vec3 x = mesh_.points[p];
       const Vec3 way = field_.closest(x).point - x;
       const double distance = way.norm();
@@ -127,7 +127,7 @@ class Projector {
   // 4.5.2: smooth in the tangent plane estimated from the mesh, then back towards the geometry. A node keeps the
   // height above the geometry it had got to; only the drift brings it nearer.
   void smoothFront(double part) {
-    NodeMover::forEach(wallGroups_, [&](Id p) {
+    mover_.forEach(wallGroups_, [&](Id p) {
       const Id row = wall_.rowOf[p];
       const Vec3 x = mesh_.points[p];
       Vec3 mean, n;
@@ -159,7 +159,7 @@ class Projector {
       }
       ideal.swap(smooth);
     }
-    NodeMover::forEach(baseGroups_, [&](Id b) {
+    mover_.forEach(baseGroups_, [&](Id b) {
       const Id row = rowOfBase_[b];
       const Vec3 step = 0.5 * (mesh_.points[wall_.nodes[row]] + ideal[row] - mesh_.points[b]);
       if (step.norm() > kSmallStep * wall_.scale[row]) mover_.drift(b, mesh_.points[b] + step, 1);
@@ -168,7 +168,7 @@ class Projector {
 
   // 4.5.1: Laplacian, kept only where the worst local measure gets better.
   void smoothInner() {
-    NodeMover::forEach(innerGroups_, [&](Id p) {
+    mover_.forEach(innerGroups_, [&](Id p) {
       Vec3 mean = Vec3::Zero();
       for (Id c : mover_.cellsOf(p)) mean += mover_.cellCentre(c);
       const Vec3 step = 0.5 * (mean / double(mover_.cellsOf(p).size()) - mesh_.points[p]);
@@ -188,7 +188,7 @@ class Projector {
     }
     std::sort(around.begin(), around.end());
     around.erase(std::unique(around.begin(), around.end()), around.end());
-    NodeMover::forEach(mover_.colour(around), [&](Id p) {
+    mover_.forEach(mover_.colour(around), [&](Id p) {
       for (double step : {0.2, 0.07}) {
         for (int k = 0; k < 6; ++k) {
           Vec3 d = Vec3::Zero();
@@ -241,7 +241,7 @@ void project(PolyMesh& mesh, DistanceField& field, const ProjectOptions& options
   for (std::size_t p = 0; p < mesh.points.size(); ++p)
     if (mesh.base[p] != kNone) walls.push_back(mesh.points[p]);
   field.fill(walls);
-  Projector(mesh, field, options).run(monitor);
+  Projector(mesh, field, options, monitor).run(monitor);
   mesh.stage = Stage::Projected;
   canonicalise(mesh);
 }

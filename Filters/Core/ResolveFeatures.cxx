@@ -79,7 +79,7 @@ void resolveFeatures(PolyMesh& mesh, DistanceField& field, const ResolveFeatures
   const FeatureGraph graph = detectFeatures(field.model(), effective(options.features, mesh));
   const WallSurface wall = wallSurface(mesh);
   if (wall.size() > 0) {
-    NodeMover mover(mesh, options.limits);
+    NodeMover mover(mesh, options.limits, &monitor);
     if (!graph.curves().empty()) snapRounds(mover, wall, field, graph, options, monitor);
     monitor.check(0.85, "fitting faces");
     fitWall(mover, wall, field, onFeatures(mesh, wall, graph));

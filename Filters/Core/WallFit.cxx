@@ -111,10 +111,10 @@ void fitWall(NodeMover& mover, const WallSurface& wall, const DistanceField& fie
   const auto groups = mover.colour(free);
   WallFitter fitter(mover, wall, field);
   // What the fit alone settles (chords of smooth surfaces) is no reason to wander along the surface.
-  for (int sweep = 0; sweep < kFitSweeps; ++sweep) NodeMover::forEach(groups, [&](Id p) { fitter.fit(p); });
+  for (int sweep = 0; sweep < kFitSweeps; ++sweep) mover.forEach(groups, [&](Id p) { fitter.fit(p); });
   for (int sweep = 0; sweep < kSearchSweeps; ++sweep) {
-    NodeMover::forEach(groups, [&](Id p) { fitter.search(p); });
-    NodeMover::forEach(groups, [&](Id p) { fitter.fit(p); });
+    mover.forEach(groups, [&](Id p) { fitter.search(p); });
+    mover.forEach(groups, [&](Id p) { fitter.fit(p); });
   }
 }
 
