@@ -27,7 +27,8 @@ def patches(boundary):
     names, kinds = field.GetAbstractArray("PatchNames"), field.GetAbstractArray("PatchTypes")
     of_face = vtk_to_numpy(boundary.GetCellData().GetArray("PatchId"))
     counts = numpy.bincount(of_face, minlength=names.GetNumberOfValues())
-    return [(names.GetValue(i), f"{counts[i]:,} faces ({kinds.GetValue(i)})") for i in range(len(counts))]
+    meaning = {"wall": "geometry", "patch": "domain side"}
+    return [(names.GetValue(i), f"{counts[i]:,} faces ({meaning[kinds.GetValue(i)]})") for i in range(len(counts))]
 
 
 def worst_measures(v):

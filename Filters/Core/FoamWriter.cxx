@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -176,7 +177,7 @@ void writeBoundary(const PolyMesh& mesh, const FaceOrder& order, FoamFile& file)
     entries += fmt::format(
         "    {}\n    {{\n        type            {};\n        nFaces          {};\n"
         "        startFace       {};\n    }}\n",
-        names[i], mesh.isWallPatch(static_cast<Id>(i)) ? "wall" : "patch", faces, start);
+        names[i], foamPatchType(mesh, static_cast<Id>(i)), faces, start);
   }
   file.header("polyBoundaryMesh", false);
   file.text(fmt::format("{}\n(\n{})\n", count, entries));
@@ -196,6 +197,15 @@ void removeStale(const fs::path& directory) {
 }
 
 }  // namespace
+
+std::string foamPatchType(const PolyMesh& mesh, Id patchId) {
+  if (!mesh.isWallPatch(patchId)) return "patch";
+  std::string name = mesh.patchNames[patchId];
+  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
+  for (const char* word : {"inlet", "outlet", "inflow", "outflow", "opening", "farfield"})
+    if (name.find(word) != std::string::npos) return "patch";
+  return "wall";
+}
 
 std::vector<std::string> foamPatchNames(const std::vector<std::string>& names) {
   const auto isLetter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };

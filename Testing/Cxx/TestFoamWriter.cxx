@@ -133,6 +133,16 @@ TEST_F(FoamWriter, BinaryHoldsTheSame) {
   EXPECT_NE(read("boundary").find("format      ascii"), std::string::npos);
 }
 
+TEST_F(FoamWriter, NamesTellWallsFromOpenings) {
+  PolyMesh mesh;
+  mesh.patchNames = {"Inlet_1", "main-outlet", "outer wall", "xmin"};
+  mesh.patchTypes = {"wall", "wall", "wall", "patch"};
+  EXPECT_EQ(foamPatchType(mesh, 0), "patch");
+  EXPECT_EQ(foamPatchType(mesh, 1), "patch");
+  EXPECT_EQ(foamPatchType(mesh, 2), "wall");
+  EXPECT_EQ(foamPatchType(mesh, 3), "patch");
+}
+
 TEST_F(FoamWriter, BoundaryCoversAllFacesOnce) {
   const PolyMesh mesh = room();
   writePolyMesh(mesh, folder_.string(), false, monitor_);
