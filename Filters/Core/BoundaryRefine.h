@@ -7,10 +7,10 @@
 namespace pm {
 
 struct BoundaryRefineOptions {
-  int layers = 3;            ///< cells across the layer
-  double expansion = 1.2;    ///< height ratio of a layer to the one nearer the wall
-  double firstHeight = 0;    ///< height at the wall, user's units; 0 = from layers and expansion
-  QualityLimits limits;      ///< minVolume is not applied: layers are thin on purpose
+  int layers = 3;          ///< cells across the layer
+  double expansion = 1.2;  ///< height ratio of a layer to the one nearer the wall
+  double firstHeight = 0;  ///< height at the wall, user's units; 0 = from layers and expansion
+  QualityLimits limits;    ///< minVolume is not applied: layers are thin on purpose
 };
 
 struct BoundaryRefineReport {

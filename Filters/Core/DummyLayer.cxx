@@ -41,7 +41,8 @@ class LayerBuilder {
   Span<Id> row(Id boundaryFace) const { return in_.faces[faceOf(boundaryFace)]; }
   bool isFront(Id boundaryFace) const { return in_.isWallPatch(in_.patch[boundaryFace]); }
 
-  // Eqs 4-1 (direction: face normals weighted with the angle at the node) and 4-2 (mean length of the front edges).
+  // Eqs 4-1 (direction: face normals weighted with the angle at the node) and 4-2 (mean length of the front
+  // edges).
   void findDirections() {
     direction_.assign(in_.points.size(), Vec3::Zero());
     length_.assign(in_.points.size(), 0.0);
@@ -52,8 +53,10 @@ class LayerBuilder {
       const Vec3 normal = measureFace(in_.points, r, true).normal.normalized();
       for (std::size_t k = 0; k < r.size(); ++k) {
         const Vec3& p = in_.points[r[k]];
-        const Vec3 next = in_.points[r[(k + 1) % r.size()]] - p, last = in_.points[r[(k + r.size() - 1) % r.size()]] - p;
-        direction_[r[k]] += std::acos(std::clamp(next.dot(last) / (next.norm() * last.norm()), -1.0, 1.0)) * normal;
+        const Vec3 next = in_.points[r[(k + 1) % r.size()]] - p,
+                   last = in_.points[r[(k + r.size() - 1) % r.size()]] - p;
+        direction_[r[k]] +=
+            std::acos(std::clamp(next.dot(last) / (next.norm() * last.norm()), -1.0, 1.0)) * normal;
         for (const Vec3& e : {next, last}) length_[r[k]] += e.norm();
         edges[r[k]] += 2;
       }
@@ -64,7 +67,8 @@ class LayerBuilder {
       for (int a = 0; a < 3; ++a)
         if (in_.fixed[p] >> a & 1) direction_[p][a] = 0;  // stays on the domain side
       if (!(direction_[p].norm() > 0))
-        throw InternalError("A front node has no direction to grow a layer in; the front is not in permitted patterns.");
+        throw InternalError(
+            "A front node has no direction to grow a layer in; the front is not in permitted patterns.");
       direction_[p].normalize();
     }
   }
@@ -99,7 +103,8 @@ class LayerBuilder {
     std::vector<FrontEdge> edges;
     for (std::size_t i = 0; i + 1 < sides.size(); i += 2) {
       const Side &s = sides[i], &t = sides[i + 1];
-      if (s.lo != t.lo || s.hi != t.hi) throw InternalError("The front is not manifold: an edge has not two faces.");
+      if (s.lo != t.lo || s.hi != t.hi)
+        throw InternalError("The front is not manifold: an edge has not two faces.");
       if (!isFront(s.face) && !isFront(t.face)) continue;
       const Side &own = isFront(s.face) ? s : t, &across = isFront(s.face) ? t : s;
       edges.push_back({own.forward ? own.lo : own.hi, own.forward ? own.hi : own.lo, own.face, across.face});
@@ -175,8 +180,8 @@ std::vector<Id> pointsInTrouble(const PolyMesh& mesh, const NodeMover& mover) {
   return points;
 }
 
-// Where the ideal directions give a prism outside the limits, points try small steps in all directions for a better
-// one: the layer's step 2 (Fig. 4-7), by search instead of by rule.
+// Where the ideal directions give a prism outside the limits, points try small steps in all directions for a
+// better one: the layer's step 2 (Fig. 4-7), by search instead of by rule.
 void relax(PolyMesh& mesh, const QualityLimits& limits, Monitor& monitor) {
   NodeMover mover(mesh, limits, &monitor);
   constexpr int kRounds = 12;
@@ -187,9 +192,11 @@ void relax(PolyMesh& mesh, const QualityLimits& limits, Monitor& monitor) {
     const auto groups = mover.colour(points);
     mover.forEach(groups, [&](Id p) {
       const Id base = mesh.base[p];
-      const double reach = base != kNone ? (mesh.points[p] - mesh.points[base]).norm() : 0.15 * mesh.finestSize;
+      const double reach =
+          base != kNone ? (mesh.points[p] - mesh.points[base]).norm() : 0.15 * mesh.finestSize;
       for (double step = 0.4 * reach; step > 0.04 * reach; step *= 0.5) {
-        if (base != kNone) mover.improve(p, mesh.points[p] + step / reach * (mesh.points[base] - mesh.points[p]));
+        if (base != kNone)
+          mover.improve(p, mesh.points[p] + step / reach * (mesh.points[base] - mesh.points[p]));
         for (int k = 0; k < 27; ++k) {
           if (k == 13) continue;
           const Vec3 d = Vec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1).normalized();
@@ -204,8 +211,9 @@ void relax(PolyMesh& mesh, const QualityLimits& limits, Monitor& monitor) {
 
 PolyMesh dummyLayer(const PolyMesh& front, const DummyLayerOptions& options, Monitor& monitor) {
   if (!(options.thickness > 0) || options.thickness > 0.5)
-    throw InputError(fmt::format("The layer's thickness must be above 0 and at most 0.5 of the edge length, not {:g}.",
-                                 options.thickness));
+    throw InputError(
+        fmt::format("The layer's thickness must be above 0 and at most 0.5 of the edge length, not {:g}.",
+                    options.thickness));
   monitor.check(0, "dummy layer");
   PolyMesh mesh = LayerBuilder(front, options.thickness).run();
   relax(mesh, options.limits, monitor);

@@ -19,8 +19,9 @@ namespace pm {
 /// AbortError on request.
 void writePolyMesh(const PolyMesh& mesh, const std::string& directory, bool binary, Monitor& monitor);
 
-/// OpenFOAM's type of patch `patchId`: "patch" for a domain side and for a patch of the geometry whose name tells
-/// that flow passes it (it contains inlet, outlet, inflow, outflow, opening or farfield, in any case), else "wall".
+/// OpenFOAM's type of patch `patchId`: "patch" for a domain side and for a patch of the geometry whose name
+/// tells that flow passes it (it contains inlet, outlet, inflow, outflow, opening or farfield, in any case),
+/// else "wall".
 std::string foamPatchType(const PolyMesh& mesh, Id patchId);
 
 /// The names as OpenFOAM words: letters, digits, '_', '-', '.', a letter or '_' first, no two alike.

@@ -103,8 +103,8 @@ class FrontMesher {
     return it != nodes_.end() && *it == key ? static_cast<Id>(it - nodes_.begin()) : kNone;
   }
 
-  // The square with lower corner c and edge `span` across `axis`, as a polygon with its hanging nodes; its normal
-  // points along +axis when `up`.
+  // The square with lower corner c and edge `span` across `axis`, as a polygon with its hanging nodes; its
+  // normal points along +axis when `up`.
   void square(Coord c, int axis, std::int32_t span, bool up, std::vector<Id>& polygon) const {
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
     polygon.clear();
@@ -165,7 +165,8 @@ class FrontMesher {
 
   void assemble() {
     const Id first = static_cast<Id>(mesh_.faces.values.size());
-    mesh_.faces.values.insert(mesh_.faces.values.end(), boundaryFaces_.values.begin(), boundaryFaces_.values.end());
+    mesh_.faces.values.insert(mesh_.faces.values.end(), boundaryFaces_.values.begin(),
+                              boundaryFaces_.values.end());
     for (Id f = 0; f < boundaryFaces_.rows(); ++f) {
       mesh_.faces.offsets.push_back(first + boundaryFaces_.offsets[f + 1]);
       mesh_.owner.push_back(boundary_[f].owner);
@@ -176,8 +177,9 @@ class FrontMesher {
     mesh_.patchNames = model_.patchNames();
     mesh_.patchTypes.assign(mesh_.patchNames.size(), "wall");
     firstSide_ = static_cast<Id>(mesh_.patchNames.size());
-    const bool sides = tree_.brick.sidesArePatches ||
-                       std::any_of(boundary_.begin(), boundary_.end(), [](const Boundary& b) { return b.side >= 0; });
+    const bool sides =
+        tree_.brick.sidesArePatches ||
+        std::any_of(boundary_.begin(), boundary_.end(), [](const Boundary& b) { return b.side >= 0; });
     if (!sides) return;
     for (std::string name : {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"}) {
       while (std::count(mesh_.patchNames.begin(), mesh_.patchNames.end(), name)) name += "_domain";

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The table of permitted patterns (thesis Fig. 3-31), made from the rule that defines them: the front faces at the
-// node form one cycle, locally a disc, and no two of them face opposite ways; then one direction sees them all.
+// The table of permitted patterns (thesis Fig. 3-31), made from the rule that defines them: the front faces
+// at the node form one cycle, locally a disc, and no two of them face opposite ways; then one direction sees
+// them all.
 #include <array>
 
 #include "PaintFront.h"

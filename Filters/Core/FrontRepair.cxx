@@ -25,7 +25,8 @@ bool crosses(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const V
   return v >= kRim && w >= kRim && v + w <= 1 - kRim;
 }
 
-// An addition may only be undone once, so after this many rounds only removals go on; they must come to an end.
+// An addition may only be undone once, so after this many rounds only removals go on; they must come to an
+// end.
 constexpr int kGrowingRounds = 12;
 
 }  // namespace
@@ -33,7 +34,8 @@ constexpr int kGrowingRounds = 12;
 FrontRepair::FrontRepair(const Octree& tree, const SurfaceModel& model, std::vector<std::uint8_t>& painted)
     : tree_(tree), model_(model), painted_(painted), touched_(painted.size(), 0) {}
 
-// Leaves in the eight octants around a node; a domain side mirrors, so that the front meets it at right angles.
+// Leaves in the eight octants around a node; a domain side mirrors, so that the front meets it at right
+// angles.
 std::array<Id, 8> FrontRepair::leavesAround(const Coord& node) const {
   std::array<Id, 8> leaves;
   for (int k = 0; k < 8; ++k) {

@@ -16,10 +16,11 @@ class FrontRepair {
  public:
   FrontRepair(const Octree& tree, const SurfaceModel& model, std::vector<std::uint8_t>& painted);
 
-  /// Paints cells with painted neighbours on opposite sides that both see the cell's centre; returns how many.
+  /// Paints cells with painted neighbours on opposite sides that both see the cell's centre; returns how
+  /// many.
   Id fill();
-  /// Adds and removes single cells until every front node is in a permitted pattern. Ends always: a cell is added at
-  /// most once, and a removed one never comes back.
+  /// Adds and removes single cells until every front node is in a permitted pattern. Ends always: a cell is
+  /// added at most once, and a removed one never comes back.
   void clean(Monitor& monitor, PaintFrontReport& report);
 
  private:

@@ -45,7 +45,7 @@ class LayerCheck {
   std::vector<Id> centreStart_;  // of each column's layers in centres_
   std::vector<CellCentres> centres_;
   std::vector<CellCentres> otherCentres_;  // #C, set for cells beside columns
-  std::vector<std::uint8_t> seen_;  // #F scratch of facesAround
+  std::vector<std::uint8_t> seen_;         // #F scratch of facesAround
 };
 
 }  // namespace pm

@@ -197,9 +197,9 @@ MeshMeasures measure(const PolyMesh& mesh) {
       const Vec3& foamOwn = m.cells[mesh.owner[f]].foamCentre;
       const Vec3& foamNext = f < internal ? m.cells[mesh.neighbour[f]].foamCentre : face.centre;
       m.faceAngle[f] = static_cast<float>(faceAngle(face.normal, next - own));
-      m.faceSkew[f] =
-          static_cast<float>(f < internal ? internalSkewness(mesh.points, mesh.faces[f], face, foamOwn, foamNext)
-                                          : boundarySkewness(mesh.points, mesh.faces[f], face, foamOwn));
+      m.faceSkew[f] = static_cast<float>(
+          f < internal ? internalSkewness(mesh.points, mesh.faces[f], face, foamOwn, foamNext)
+                       : boundarySkewness(mesh.points, mesh.faces[f], face, foamOwn));
     }
   });
   return m;

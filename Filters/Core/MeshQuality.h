@@ -48,8 +48,9 @@ struct CellMeasures {
   Vec3 centre = Vec3::Zero();  ///< eq 4-17
   double volume = 0;           ///< eq 4-19
   double minTet = 0;           ///< smallest central tetrahedron about centre, eq 4-22
-  Vec3 foamCentre = Vec3::Zero();  ///< OpenFOAM's cell centre: the faces' pyramids about the mean of their centres
-  double minPyramid = 0;           ///< smallest pyramid of a face over foamCentre; checkMesh fails below 0
+  Vec3 foamCentre =
+      Vec3::Zero();       ///< OpenFOAM's cell centre: the faces' pyramids about the mean of their centres
+  double minPyramid = 0;  ///< smallest pyramid of a face over foamCentre; checkMesh fails below 0
 };
 
 /// Different points of each cell, ascending; what eq 4-16 averages.

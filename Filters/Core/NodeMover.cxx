@@ -85,11 +85,13 @@ bool NodeMover::faceAngleHolds(Id f, const FaceState& old) const {
   const bool internal = f < mesh_.internalFaces();
   const double minCos = internal ? cosInternal_ : cosBoundary_;
   const double maxSkew = internal ? limits_.maxSkewInternal : limits_.maxSkewBoundary;
-  return (now.cosAngle >= minCos || now.cosAngle >= old.cosAngle) && (now.skew <= maxSkew || now.skew <= old.skew);
+  return (now.cosAngle >= minCos || now.cosAngle >= old.cosAngle) &&
+         (now.skew <= maxSkew || now.skew <= old.skew);
 }
 
 bool NodeMover::cellHolds(const CellMeasures& now, const CellMeasures& old) const {
-  return (now.volume >= minVolume_ || now.volume >= old.volume) && (now.minTet >= minTet_ || now.minTet >= old.minTet) &&
+  return (now.volume >= minVolume_ || now.volume >= old.volume) &&
+         (now.minTet >= minTet_ || now.minTet >= old.minTet) &&
          (now.minPyramid >= minTet_ || now.minPyramid >= old.minPyramid);
 }
 
@@ -97,8 +99,8 @@ double NodeMover::badnessOfFace(const FaceState& s, bool internal) const {
   const double angle = internal ? limits_.maxAngleInternal : limits_.maxAngleBoundary;
   const double eta = internal ? limits_.minEtaInternal : limits_.minEtaBoundary;
   const double skew = internal ? limits_.maxSkewInternal : limits_.maxSkewBoundary;
-  return std::max({std::acos(std::clamp(s.cosAngle, -1.0, 1.0)) / (angle * kDegree), s.shape.warpage / limits_.maxWarpage,
-                   s.skew / skew, (1 - s.shape.eta) / (1 - eta)});
+  return std::max({std::acos(std::clamp(s.cosAngle, -1.0, 1.0)) / (angle * kDegree),
+                   s.shape.warpage / limits_.maxWarpage, s.skew / skew, (1 - s.shape.eta) / (1 - eta)});
 }
 
 // Volume and tetrahedra against the limits; below 1 when better.
@@ -133,7 +135,8 @@ void NodeMover::gather(const Id* points, std::size_t count, Touched& t) const {
   sortUnique(t.faces);
 }
 
-// The worst measure got better; or it stayed (two faces of a symmetric prism share it) and what is over the limits shrank.
+// The worst measure got better; or it stayed (two faces of a symmetric prism share it) and what is over the
+// limits shrank.
 bool NodeMover::isBetter(const Touched& t) const {
   double before = 0, after = 0, excessBefore = 0, excessAfter = 0;
   const auto add = [](double badness, double& worst, double& excess) {
@@ -205,8 +208,8 @@ double NodeMover::drift(Id p, const Vec3& target, int halvings) {
 }
 
 std::vector<std::vector<Id>> NodeMover::colour(const std::vector<Id>& points) const {
-  // A move writes its cells and their faces and reads the cells across those faces; so two points may share a colour
-  // when no cell of one is a cell of the other or a face neighbour of one.
+  // A move writes its cells and their faces and reads the cells across those faces; so two points may share a
+  // colour when no cell of one is a cell of the other or a face neighbour of one.
   constexpr int kWords = 3, kColours = 64 * kWords;
   using Mask = std::array<std::uint64_t, kWords>;
   std::vector<Mask> used(mesh_.cellCount, Mask{});

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Node drifting (thesis 4.4.1): a point moves only if every cell and face it touches keeps the limits.
 //
-// The mover caches face and cell measures of the whole mesh and keeps them current move by move; an undone move
-// restores points and caches to the bit. What a move touches: the cells around the point and all their faces. Where a
-// face or cell is outside a limit already, a move may not make it worse.
+// The mover caches face and cell measures of the whole mesh and keeps them current move by move; an undone
+// move restores points and caches to the bit. What a move touches: the cells around the point and all their
+// faces. Where a face or cell is outside a limit already, a move may not make it worse.
 #pragma once
 
 #include <tbb/parallel_for.h>
@@ -22,10 +22,11 @@ class NodeMover {
 
   /// Moves p to target (its fixed coordinates stay); true when kept.
   bool move(Id p, const Vec3& target) { return attempt(&p, &target, 1, false); }
-  /// As move, but a refused target is pulled back half way, up to `halvings` times. Returns the kept fraction of the
-  /// way, 0 when the point stayed.
+  /// As move, but a refused target is pulled back half way, up to `halvings` times. Returns the kept fraction
+  /// of the way, 0 when the point stayed.
   double drift(Id p, const Vec3& target, int halvings = 3);
-  /// Kept only if valid and the worst local measure, relative to its limit, gets better (4.5, second strategy).
+  /// Kept only if valid and the worst local measure, relative to its limit, gets better (4.5, second
+  /// strategy).
   bool improve(Id p, const Vec3& target) { return attempt(&p, &target, 1, true); }
   /// Moves several points at once, all or none.
   bool moveTogether(const std::vector<Id>& points, const std::vector<Vec3>& targets) {
@@ -37,11 +38,12 @@ class NodeMover {
   /// Worst measure around a point relative to its limit: below 1 is valid, above 1 is not.
   double badness(Id p) const;
 
-  /// Groups of points whose moves (a wall point's together with its base) touch nothing in common: within a group
-  /// they may run in parallel, with the same result for any number of threads. Greedy, in the order given.
+  /// Groups of points whose moves (a wall point's together with its base) touch nothing in common: within a
+  /// group they may run in parallel, with the same result for any number of threads. Greedy, in the order
+  /// given.
   std::vector<std::vector<Id>> colour(const std::vector<Id>& points) const;
-  /// Calls body(point) for every point, group by group, the points of a group in parallel. Throws AbortError between
-  /// groups when the monitor says so.
+  /// Calls body(point) for every point, group by group, the points of a group in parallel. Throws AbortError
+  /// between groups when the monitor says so.
   template <class Body>
   void forEach(const std::vector<std::vector<Id>>& groups, const Body& body) const {
     for (const auto& group : groups) {

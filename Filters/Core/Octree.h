@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A linear octree over a brick of root cells: leaves as sorted Morton keys with levels, no pointers.
 //
-// A key is the Morton code of the leaf's lower corner on the finest grid (21 bits an axis). Root cells may differ in
-// edge length between axes by the little that makes a box domain end exactly on cell faces.
+// A key is the Morton code of the leaf's lower corner on the finest grid (21 bits an axis). Root cells may
+// differ in edge length between axes by the little that makes a box domain end exactly on cell faces.
 #pragma once
 
 #include <array>
@@ -29,7 +29,9 @@ struct Brick {
   int maxLevel = 0;                            ///< level of the finest grid
   bool sidesArePatches = false;                ///< a given box domain: its sides bound the mesh
 
-  std::int32_t span(int level) const { return std::int32_t(1) << (maxLevel - level); }  ///< edge in finest cells
+  std::int32_t span(int level) const {
+    return std::int32_t(1) << (maxLevel - level);
+  }  ///< edge in finest cells
   std::int32_t extent(int axis) const { return roots[axis] << maxLevel; }
   Vec3 cellSize(int level) const { return rootSize / double(std::int64_t(1) << level); }
   double edge(int level) const { return cellSize(level).maxCoeff(); }
@@ -44,8 +46,8 @@ class Octree {
   Brick brick;
   std::vector<Key> keys;             // #L ascending
   std::vector<std::uint8_t> levels;  // #L
-  Csr<Id> triangles;                 // #L rows: triangles that touch the leaf; empty lists after load from a file
-  std::vector<std::uint8_t> cut;     // #L 1 = a triangle touches the leaf
+  Csr<Id> triangles;  // #L rows: triangles that touch the leaf; empty lists after load from a file
+  std::vector<std::uint8_t> cut;  // #L 1 = a triangle touches the leaf
 
   Id size() const { return static_cast<Id>(keys.size()); }
   Coord corner(Id leaf) const { return decode(keys[leaf]); }
@@ -64,7 +66,8 @@ class Octree {
   int shift_ = 63;
 };
 
-/// Predicates: leaves tile the brick without hole or overlap; adjacent leaves (face, edge, corner) differ by <= 1 level.
+/// Predicates: leaves tile the brick without hole or overlap; adjacent leaves (face, edge, corner) differ by
+/// <= 1 level.
 bool isComplete(const Octree& tree);
 bool isBalanced(const Octree& tree);
 

@@ -12,8 +12,8 @@
 
 namespace pm {
 namespace {
-// A triangle that misses a cell by less than this part of the cell's edge still counts as touching it, so that
-// rounding never opens a hole in a surface that lies on cell faces.
+// A triangle that misses a cell by less than this part of the cell's edge still counts as touching it, so
+// that rounding never opens a hole in a surface that lies on cell faces.
 constexpr double kTouchSlack = 1e-9;
 }  // namespace
 
@@ -66,7 +66,8 @@ void OctreeBuilder::split(const std::vector<Id>& leaves) {
   const std::size_t firstNew = nodes_.size();
   nodes_.resize(firstNew + 8 * leaves.size());
   leafCount_ += 7 * static_cast<std::int64_t>(leaves.size());
-  // One byte a (leaf, triangle) pair tells which children the triangle touches; counting, summing and filling follow.
+  // One byte a (leaf, triangle) pair tells which children the triangle touches; counting, summing and filling
+  // follow.
   std::vector<std::size_t> start(leaves.size() + 1, 0);
   for (std::size_t i = 0; i < leaves.size(); ++i) start[i + 1] = start[i] + nodes_[leaves[i]].triangles;
   std::vector<std::uint8_t> touched(start.back());
@@ -83,7 +84,8 @@ void OctreeBuilder::split(const std::vector<Id>& leaves) {
     }
     const Span<Id> list = triangles(parent);
     for (std::size_t j = 0; j < list.size(); ++j) {
-      const Vec3 &a = model_.corner(list[j], 0), &b = model_.corner(list[j], 1), &c = model_.corner(list[j], 2);
+      const Vec3 &a = model_.corner(list[j], 0), &b = model_.corner(list[j], 1),
+                 &c = model_.corner(list[j], 2);
       std::uint8_t bits = 0;
       for (int k = 0; k < 8; ++k)
         if (touches(boxes[k], a, b, c, slack)) {
@@ -99,7 +101,8 @@ void OctreeBuilder::split(const std::vector<Id>& leaves) {
     end += nodes_[n].triangles;
   }
   if (end > std::numeric_limits<std::uint32_t>::max())
-    throw BudgetError("The octree would hold more than 4 billion triangle references; use a larger feature size.");
+    throw BudgetError(
+        "The octree would hold more than 4 billion triangle references; use a larger feature size.");
   pool_.resize(end);
   tbb::parallel_for(std::size_t(0), leaves.size(), [&](std::size_t i) {
     const Node& parent = nodes_[leaves[i]];

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The octree while it grows: nodes with children and triangle lists, split in batches.
 //
-// A tree of nodes makes splitting and neighbour look-up simple while the shape changes; finish() turns its leaves into
-// the linear Octree the stages work on. Children of a node are consecutive, so one index a node is enough.
+// A tree of nodes makes splitting and neighbour look-up simple while the shape changes; finish() turns its
+// leaves into the linear Octree the stages work on. Children of a node are consecutive, so one index a node
+// is enough.
 #pragma once
 
 #include <vector>
@@ -35,19 +36,22 @@ class OctreeBuilder {
   Box box(const Node& n) const { return brick_.box(n.key, n.level); }
   /// Node at the given level that covers c, or the leaf above it; kNone outside the brick.
   Id find(const Coord& c, int level) const;
-  /// Node beside n of n's level (or the coarser leaf there) at a distance of d cells; kNone outside the brick.
+  /// Node beside n of n's level (or the coarser leaf there) at a distance of d cells; kNone outside the
+  /// brick.
   Id neighbour(const Node& n, const Coord& d) const;
 
-  /// Splits leaves (ascending, unique); children inherit the triangles that touch them. Parallel, deterministic.
+  /// Splits leaves (ascending, unique); children inherit the triangles that touch them. Parallel,
+  /// deterministic.
   void split(const std::vector<Id>& leaves);
-  /// Grades the tree: within `cells` cells of every split node no leaf is coarser than that node; 1 is the 2:1 rule
-  /// over faces, edges and corners.
+  /// Grades the tree: within `cells` cells of every split node no leaf is coarser than that node; 1 is the
+  /// 2:1 rule over faces, edges and corners.
   void balance(int cells);
 
   Octree finish() const;
 
  private:
-  /// What the grading asks for: leaves to split, and nodes to look at again because a leaf was more than one level off.
+  /// What the grading asks for: leaves to split, and nodes to look at again because a leaf was more than one
+  /// level off.
   struct Grading {
     std::vector<Id> leaves, unsettled;
   };

@@ -26,18 +26,21 @@ void checkOptions(const SurfaceModel& model, const OctreeDecomposeOptions& o) {
   if (!std::isfinite(o.featureSize) || o.featureSize < 0)
     throw InputError(fmt::format("The feature size must be a positive length, not {}.", o.featureSize));
   if (o.featureSize > b.size().maxCoeff())
-    throw InputError(fmt::format("The feature size {:g} is larger than the geometry ({:g} x {:g} x {:g}); choose a "
-                                 "smaller one, or check the units.",
-                                 o.featureSize, b.size()[0], b.size()[1], b.size()[2]));
+    throw InputError(
+        fmt::format("The feature size {:g} is larger than the geometry ({:g} x {:g} x {:g}); choose a "
+                    "smaller one, or check the units.",
+                    o.featureSize, b.size()[0], b.size()[1], b.size()[2]));
   if (!std::isfinite(o.baseSize) || o.baseSize < 0)
     throw InputError(fmt::format("The base size must be a positive length, not {}.", o.baseSize));
   if (o.baseSize > 0 && o.maxLevel < 0 && o.baseSize < effectiveFeatureSize(model, o))
-    throw InputError(fmt::format("The base size {:g} is smaller than the feature size {:g}; make it at least as large.",
-                                 o.baseSize, effectiveFeatureSize(model, o)));
+    throw InputError(
+        fmt::format("The base size {:g} is smaller than the feature size {:g}; make it at least as large.",
+                    o.baseSize, effectiveFeatureSize(model, o)));
   if (o.useDomain) {
     if (!o.domain.lo.allFinite() || !o.domain.hi.allFinite() || !(o.domain.size().array() > 0).all())
       throw InputError("The domain's bounds must be finite, and each minimum below its maximum.");
-    if (!o.domain.overlaps(b)) throw InputError("The geometry lies outside the given domain; check bounds and units.");
+    if (!o.domain.overlaps(b))
+      throw InputError("The geometry lies outside the given domain; check bounds and units.");
   }
   if (o.cellsBetweenLevels < 1 || o.bufferCells < 0)
     throw InputError("Cells between levels must be at least 1, and buffer cells at least 0.");
@@ -63,8 +66,8 @@ Brick chooseBrick(const SurfaceModel& model, const OctreeDecomposeOptions& o) {
   const Vec3 size = extent.size();
   double base = o.baseSize;
   if (!(base > 0)) {
-    // The largest feature * 2^k that keeps a few root cells along the longest side: coarse far from the geometry,
-    // and the finest cell is the feature size exactly.
+    // The largest feature * 2^k that keeps a few root cells along the longest side: coarse far from the
+    // geometry, and the finest cell is the feature size exactly.
     base = o.maxLevel >= 0 ? size.maxCoeff() / 4 : feature;
     if (o.maxLevel < 0)
       while (2 * base <= size.maxCoeff() / 4) base *= 2;
@@ -72,38 +75,48 @@ Brick chooseBrick(const SurfaceModel& model, const OctreeDecomposeOptions& o) {
   Brick brick;
   double cells = 1;
   for (int a = 0; a < 3; ++a) {
-    const double wanted = o.useDomain ? std::max(1.0, std::round(size[a] / base)) : std::ceil(size[a] / base) + 2 * o.margin;
+    const double wanted =
+        o.useDomain ? std::max(1.0, std::round(size[a] / base)) : std::ceil(size[a] / base) + 2 * o.margin;
     if (!(wanted < double(1 << kCoordBits)))
-      throw InputError(fmt::format("A base size of {:g} divides the domain into too many root cells; enlarge it.", base));
+      throw InputError(
+          fmt::format("A base size of {:g} divides the domain into too many root cells; enlarge it.", base));
     brick.roots[a] = std::max(1, static_cast<int>(std::ceil(wanted)));
     brick.rootSize[a] = o.useDomain ? size[a] / brick.roots[a] : base;
     cells *= brick.roots[a];
   }
   if (cells > double(o.maxCells))
-    throw BudgetError(fmt::format("A base size of {:g} already gives {:g} root cells, more than the {} allowed; enlarge "
-                                  "it or raise the limit.", base, cells, o.maxCells));
+    throw BudgetError(
+        fmt::format("A base size of {:g} already gives {:g} root cells, more than the {} allowed; enlarge "
+                    "it or raise the limit.",
+                    base, cells, o.maxCells));
   const Vec3 whole = brick.rootSize.cwiseProduct(Vec3(brick.roots[0], brick.roots[1], brick.roots[2]));
   brick.origin = o.useDomain ? extent.lo : Vec3(extent.centre() - 0.5 * whole);
   brick.sidesArePatches = o.useDomain;
   brick.maxLevel = o.maxLevel >= 0 ? o.maxLevel : levelFor(brick.rootSize.maxCoeff(), feature);
   const int most = *std::max_element(brick.roots.begin(), brick.roots.end());
-  if (brick.maxLevel > kMaxLevel || (std::int64_t(most) << brick.maxLevel) > (std::int64_t(1) << kCoordBits) - 1)
-    throw InputError(fmt::format("The feature size {:g} is too small for a domain of {:g}: at most 2^{} cells fit along "
-                                 "a side.", feature, whole.maxCoeff(), kCoordBits));
+  if (brick.maxLevel > kMaxLevel ||
+      (std::int64_t(most) << brick.maxLevel) > (std::int64_t(1) << kCoordBits) - 1)
+    throw InputError(
+        fmt::format("The feature size {:g} is too small for a domain of {:g}: at most 2^{} cells fit along "
+                    "a side.",
+                    feature, whole.maxCoeff(), kCoordBits));
   return brick;
 }
 
-void splitWithinBudget(OctreeBuilder& builder, const std::vector<Id>& leaves, const OctreeDecomposeOptions& o) {
+void splitWithinBudget(OctreeBuilder& builder, const std::vector<Id>& leaves,
+                       const OctreeDecomposeOptions& o) {
   const std::int64_t after = builder.leafCount() + 7 * static_cast<std::int64_t>(leaves.size());
   if (after > o.maxCells)
-    throw BudgetError(fmt::format("The octree would need more than {} cells (about {} GB); use a larger feature size, "
-                                  "or raise the limit on cells.", o.maxCells, 1 + after * 1000 / 1000000000));
+    throw BudgetError(
+        fmt::format("The octree would need more than {} cells (about {} GB); use a larger feature size, "
+                    "or raise the limit on cells.",
+                    o.maxCells, 1 + after * 1000 / 1000000000));
   builder.split(leaves);
 }
 
 // Pass 1: criteria 1-5 and 9, level by level from the roots.
-void refineByCriteria(OctreeBuilder& builder, const RefinementCriteria& criteria, const OctreeDecomposeOptions& o,
-                      Monitor& monitor) {
+void refineByCriteria(OctreeBuilder& builder, const RefinementCriteria& criteria,
+                      const OctreeDecomposeOptions& o, Monitor& monitor) {
   std::vector<Id> batch(builder.size());
   std::iota(batch.begin(), batch.end(), 0);
   for (int level = 0; level < builder.brick().maxLevel && !batch.empty(); ++level) {
@@ -116,8 +129,8 @@ void refineByCriteria(OctreeBuilder& builder, const RefinementCriteria& criteria
   }
 }
 
-// Criteria 7, 8: a cell the surface does not touch, beside a smaller one that it does, becomes as small, so that the
-// front follows the surface in cells of one size.
+// Criteria 7, 8: a cell the surface does not touch, beside a smaller one that it does, becomes as small, so
+// that the front follows the surface in cells of one size.
 std::vector<Id> besideSmallerCut(const OctreeBuilder& builder, int cells) {
   tbb::enumerable_thread_specific<std::vector<Id>> found;
   tbb::parallel_for(Id(0), builder.size(), [&](Id i) {

@@ -55,9 +55,11 @@ std::vector<std::uint8_t> chooseInside(const Octree& tree, const std::vector<Pai
   for (Id r = 0; r < static_cast<Id>(regions.size()); ++r)
     if (!regions[r].open && (best == kNone || regions[r].volume > regions[best].volume)) best = r;
   if (best == kNone)
-    throw RegionError(fmt::format("The geometry encloses nothing with {}: it leaks through a hole larger than a cell, or "
-                                  "is too thin for a cell to fit inside. Use a larger or a smaller feature size, close "
-                                  "the hole, or mesh the outside.", sizeHint(tree)));
+    throw RegionError(
+        fmt::format("The geometry encloses nothing with {}: it leaks through a hole larger than a cell, or "
+                    "is too thin for a cell to fit inside. Use a larger or a smaller feature size, close "
+                    "the hole, or mesh the outside.",
+                    sizeHint(tree)));
   chosen[best] = 1;
   return chosen;
 }
@@ -71,19 +73,22 @@ std::vector<std::uint8_t> chooseByPoints(const Octree& tree, const std::vector<P
     const Id leaf = tree.locate(p);
     if (leaf == kNone) throw RegionError(where + " lies outside the domain; give one within the meshed box.");
     if (number[leaf] == kNone)
-      throw RegionError(where + " lies in a cell that touches the geometry; move it away from the surface, or use a "
-                                "smaller feature size.");
+      throw RegionError(where +
+                        " lies in a cell that touches the geometry; move it away from the surface, or use a "
+                        "smaller feature size.");
     if (regions[number[leaf]].open && !tree.brick.sidesArePatches && !options.allowOpen)
-      throw RegionError(fmt::format("The region of {} leaks: with {} it reaches the sides of the box around the geometry "
-                                    "through a hole larger than a cell. Use a larger feature size or close the hole.",
-                                    "the p" + where.substr(5), sizeHint(tree)));
+      throw RegionError(
+          fmt::format("The region of {} leaks: with {} it reaches the sides of the box around the geometry "
+                      "through a hole larger than a cell. Use a larger feature size or close the hole.",
+                      "the p" + where.substr(5), sizeHint(tree)));
     chosen[number[leaf]] = 1;
   }
   return chosen;
 }
 
-// The outside holds the domain's corners. What merely touches a side (the inside of a wheel that pokes through the
-// ground) does not count, unless the geometry covers every corner; then the largest open region is meant.
+// The outside holds the domain's corners. What merely touches a side (the inside of a wheel that pokes
+// through the ground) does not count, unless the geometry covers every corner; then the largest open region
+// is meant.
 std::vector<std::uint8_t> chooseOutside(const Octree& tree, const std::vector<PaintedRegion>& regions,
                                         const std::vector<Id>& number) {
   std::vector<std::uint8_t> chosen(regions.size(), 0);
@@ -99,16 +104,19 @@ std::vector<std::uint8_t> chooseOutside(const Octree& tree, const std::vector<Pa
   for (Id r = 0; r < static_cast<Id>(regions.size()); ++r)
     if (regions[r].open && (best == kNone || regions[r].volume > regions[best].volume)) best = r;
   if (best == kNone)
-    throw RegionError("Nothing reaches the sides of the domain: the geometry fills it. Give a larger domain, or mesh the "
-                      "inside.");
+    throw RegionError(
+        "Nothing reaches the sides of the domain: the geometry fills it. Give a larger domain, or mesh the "
+        "inside.");
   chosen[best] = 1;
   return chosen;
 }
 
-// Repair can cut a thin neck; what hangs on it alone would be a mesh of its own, so each region keeps its largest part.
+// Repair can cut a thin neck; what hangs on it alone would be a mesh of its own, so each region keeps its
+// largest part.
 void dropIslands(const Octree& tree, const std::vector<Id>& region, std::vector<std::uint8_t>& painted) {
   std::vector<PaintedRegion> parts;
-  const std::vector<Id> part = components(tree, [&](Id leaf) { return painted[leaf] != 0; }, parts);
+  const std::vector<Id> part = components(
+      tree, [&](Id leaf) { return painted[leaf] != 0; }, parts);
   std::vector<Id> home(parts.size(), kNone), largest;
   for (Id leaf = 0; leaf < tree.size(); ++leaf)
     if (painted[leaf] && region[leaf] != kNone) home[part[leaf]] = region[leaf];
@@ -122,17 +130,19 @@ void dropIslands(const Octree& tree, const std::vector<Id>& region, std::vector<
 
 }  // namespace
 
-PolyMesh paintFront(const Octree& tree, const SurfaceModel& model, const PaintFrontOptions& options, Monitor& monitor,
-                    PaintFrontReport* report) {
+PolyMesh paintFront(const Octree& tree, const SurfaceModel& model, const PaintFrontOptions& options,
+                    Monitor& monitor, PaintFrontReport* report) {
   PaintFrontReport local;
   PaintFrontReport& r = report ? *report : local;
   r = {};
 
   monitor.check(0, "painting");
-  const std::vector<Id> number = components(tree, [&](Id leaf) { return !tree.cut[leaf]; }, r.regions);
-  const std::vector<std::uint8_t> chosen = options.region == Region::Inside    ? chooseInside(tree, r.regions)
-                                           : options.region == Region::Outside ? chooseOutside(tree, r.regions, number)
-                                                                               : chooseByPoints(tree, r.regions, number, options);
+  const std::vector<Id> number = components(
+      tree, [&](Id leaf) { return !tree.cut[leaf]; }, r.regions);
+  const std::vector<std::uint8_t> chosen = options.region == Region::Inside ? chooseInside(tree, r.regions)
+                                           : options.region == Region::Outside
+                                               ? chooseOutside(tree, r.regions, number)
+                                               : chooseByPoints(tree, r.regions, number, options);
   std::vector<std::uint8_t> painted(tree.size(), 0);
   for (Id leaf = 0; leaf < tree.size(); ++leaf) painted[leaf] = number[leaf] != kNone && chosen[number[leaf]];
 
@@ -150,8 +160,10 @@ PolyMesh paintFront(const Octree& tree, const SurfaceModel& model, const PaintFr
   dropIslands(tree, number, painted);
   r.chosenCells = static_cast<Id>(std::count(painted.begin(), painted.end(), 1));
   if (r.chosenCells == 0)
-    throw RegionError(fmt::format("The region is too narrow for {}: no cell is left after repairing the front. Use a "
-                                  "smaller feature size.", sizeHint(tree)));
+    throw RegionError(
+        fmt::format("The region is too narrow for {}: no cell is left after repairing the front. Use a "
+                    "smaller feature size.",
+                    sizeHint(tree)));
   std::stable_sort(r.regions.begin(), r.regions.end(),
                    [](const PaintedRegion& a, const PaintedRegion& b) { return a.volume > b.volume; });
   monitor.check(0.85, "front mesh");

@@ -15,11 +15,12 @@ namespace {
 constexpr double kArrived = 1e-4;
 // Smoothing steps below this part of the length scale are not worth their checks.
 constexpr double kSmallStep = 0.02;
-// Height of the wall prism the bases are led to, in units of the length scale: room for the layers, and near enough
-// that the octree cells below take up most of the stretch.
+// Height of the wall prism the bases are led to, in units of the length scale: room for the layers, and near
+// enough that the octree cells below take up most of the stretch.
 constexpr double kPrismHeight = 0.4;
 constexpr int kFlatteningSweeps = 3;
-// A node farther than this from the geometry after projection, in length scales, is stuck; rounds to free such nodes.
+// A node farther than this from the geometry after projection, in length scales, is stuck; rounds to free
+// such nodes.
 constexpr double kStuck = 0.02;
 constexpr int kFreeingRounds = 6;
 // Octree nodes within so many edges of the bases may move; the core beyond keeps its perfect cells.
@@ -28,7 +29,12 @@ constexpr int kInnerRings = 2;
 class Projector {
  public:
   Projector(PolyMesh& mesh, const DistanceField& field, const ProjectOptions& options, const Monitor& monitor)
-      : mesh_(mesh), field_(field), options_(options), mover_(mesh, options.limits, &monitor), wall_(wallSurface(mesh)), cellPoints_(cellPoints(mesh)) {
+      : mesh_(mesh),
+        field_(field),
+        options_(options),
+        mover_(mesh, options.limits, &monitor),
+        wall_(wallSurface(mesh)),
+        cellPoints_(cellPoints(mesh)) {
     std::vector<Id> bases;
     for (Id p : wall_.nodes) bases.push_back(mesh.base[p]);
     wallGroups_ = mover_.colour(wall_.nodes);
@@ -74,8 +80,9 @@ class Projector {
     return length > 0 ? Vec3(n / length) : n;
   }
 
-  /// Mean of the centres of the wall faces around a node, weighted by area (so that hanging nodes on the edges do not
-  /// count), relative to the node; and the outward normal there. False where the faces have no area.
+  /// Mean of the centres of the wall faces around a node, weighted by area (so that hanging nodes on the
+  /// edges do not count), relative to the node; and the outward normal there. False where the faces have no
+  /// area.
   bool meanAround(Id row, Vec3& mean, Vec3& normal) const {
     const Vec3& x = mesh_.points[wall_.nodes[row]];
     mean = normal = Vec3::Zero();
@@ -92,8 +99,8 @@ class Projector {
     return true;
   }
 
-  // 4.5.1: smoothing flattens the front's stairs before it moves; a stair's riser has to lie down in the surface, and
-  // folds if it is still upright when it gets there.
+  // 4.5.1: smoothing flattens the front's stairs before it moves; a stair's riser has to lie down in the
+  // surface, and folds if it is still upright when it gets there.
   void flattenFront() {
     mover_.forEach(wallGroups_, [&](Id p) {
       Vec3 mean, normal;
@@ -124,8 +131,8 @@ class Projector {
     });
   }
 
-  // 4.5.2: smooth in the tangent plane estimated from the mesh, then back towards the geometry. A node keeps the
-  // height above the geometry it had got to; only the drift brings it nearer.
+  // 4.5.2: smooth in the tangent plane estimated from the mesh, then back towards the geometry. A node keeps
+  // the height above the geometry it had got to; only the drift brings it nearer.
   void smoothFront(double part) {
     mover_.forEach(wallGroups_, [&](Id p) {
       const Id row = wall_.rowOf[p];
@@ -144,7 +151,8 @@ class Projector {
     });
   }
 
-  // 4.5.3: bases below their wall nodes, at one smooth height; ideal places are averaged with the neighbours'.
+  // 4.5.3: bases below their wall nodes, at one smooth height; ideal places are averaged with the
+  // neighbours'.
   void leadBases() {
     std::vector<Vec3> ideal(wall_.size()), smooth(wall_.size());
     for (Id row = 0; row < wall_.size(); ++row) {
@@ -176,9 +184,9 @@ class Projector {
     });
   }
 
-  // A node short of the geometry is held by a cell at a limit, often by a single sheared prism. The points of its cells
-  // search around themselves for a place where the worst measure is better (4.5, second strategy). False when no node
-  // is stuck.
+  // A node short of the geometry is held by a cell at a limit, often by a single sheared prism. The points of
+  // its cells search around themselves for a place where the worst measure is better (4.5, second strategy).
+  // False when no node is stuck.
   bool freeStuck() {
     std::vector<Id> around;
     for (Id row = 0; row < wall_.size(); ++row) {

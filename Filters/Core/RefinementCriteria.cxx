@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kDegree = 3.14159265358979323846 / 180;
 
-// A cell with more triangles than this is judged by an even sample of them; it either splits for its normals or is
-// looked at again, with fewer triangles, one level down.
+// A cell with more triangles than this is judged by an even sample of them; it either splits for its normals
+// or is looked at again, with fewer triangles, one level down.
 constexpr std::size_t kSample = 24;
 
 FeatureOptions featureOptions(const OctreeDecomposeOptions& o, double finest) {
@@ -59,8 +59,8 @@ bool RefinementCriteria::sizeAsksFor(const OctreeBuilder& builder, const OctreeB
   return false;
 }
 
-// Criteria 5 and 7: a feature in the cell, or within one finest cell of it, so that the front has fine cells to either
-// side of the feature's own.
+// Criteria 5 and 7: a feature in the cell, or within one finest cell of it, so that the front has fine cells
+// to either side of the feature's own.
 bool RefinementCriteria::featureInside(Box box) const {
   box.lo.array() -= finest_;
   box.hi.array() += finest_;
@@ -71,8 +71,9 @@ bool RefinementCriteria::featureInside(Box box) const {
   return false;
 }
 
-// Separating criterion (Fig. 3-19): two pieces of surface face each other when the line between them leaves the plane
-// of either by more than closeAngle. Pieces nearer than half the finest cell cannot be separated by any.
+// Separating criterion (Fig. 3-19): two pieces of surface face each other when the line between them leaves
+// the plane of either by more than closeAngle. Pieces nearer than half the finest cell cannot be separated by
+// any.
 bool RefinementCriteria::facing(const Vec3& normalA, const Vec3& normalB, const Vec3& between) const {
   const double d = between.norm();
   if (d < 0.5 * finest_) return false;
@@ -106,15 +107,18 @@ RefinementCriteria::Summary RefinementCriteria::look(const OctreeBuilder& builde
   for (int i = 0; i < s.normalCount; ++i) s.normals[i] = normal[i * count / s.normalCount];
   // Criterion 1: a spread of normalAngle is half of it to either side of the mean.
   if (options_.normalAngle > 0)
-    for (std::size_t i = 0; i < count && !s.split; ++i) s.split = std::abs(normal[i].dot(s.normal)) < cosHalfNormal_;
+    for (std::size_t i = 0; i < count && !s.split; ++i)
+      s.split = std::abs(normal[i].dot(s.normal)) < cosHalfNormal_;
   // Criterion 3.
   if (options_.separate)
     for (std::size_t i = 0; i < count && !s.split; ++i)
-      for (std::size_t j = 0; j < i && !s.split; ++j) s.split = facing(normal[i], normal[j], centre[j] - centre[i]);
+      for (std::size_t j = 0; j < i && !s.split; ++j)
+        s.split = facing(normal[i], normal[j], centre[j] - centre[i]);
   return s;
 }
 
-// Criteria 2 and 4 for two adjacent cells, each with a single piece of surface (else they would split by 1 or 3).
+// Criteria 2 and 4 for two adjacent cells, each with a single piece of surface (else they would split by 1 or
+// 3).
 bool RefinementCriteria::disagree(const Summary& a, const Summary& b) const {
   if (options_.normalAngle > 0)
     for (int i = 0; i < a.normalCount; ++i)
@@ -135,9 +139,10 @@ static void forCutNeighbours(const OctreeBuilder& builder, const std::vector<Id>
   }
 }
 
-// A cell on the surface more than two fifths of whose neighbours on it will be split is split as well: coarse islands
-// and ragged borders in a fine front are what the projection cannot straighten. A straight border stays where it is
-// (three of eight neighbours); from a corner it would creep on, so there are only a few rounds.
+// A cell on the surface more than two fifths of whose neighbours on it will be split is split as well: coarse
+// islands and ragged borders in a fine front are what the projection cannot straighten. A straight border
+// stays where it is (three of eight neighbours); from a corner it would creep on, so there are only a few
+// rounds.
 void RefinementCriteria::fillIslands(const OctreeBuilder& builder, const std::vector<Id>& batch,
                                      std::vector<std::uint8_t>& split) {
   std::vector<std::uint8_t> around(batch.size(), 0), finer(batch.size(), 0);

@@ -22,8 +22,8 @@ class RefinementCriteria {
   /// What the surface is like inside one cell.
   struct Summary {
     static constexpr int kNormals = 8;
-    Vec3 normal = Vec3::Zero();  ///< mean of the normals, signs aligned
-    Vec3 centre = Vec3::Zero();  ///< mean of the cut figures' centres
+    Vec3 normal = Vec3::Zero();          ///< mean of the normals, signs aligned
+    Vec3 centre = Vec3::Zero();          ///< mean of the cut figures' centres
     std::array<Vec3, kNormals> normals;  ///< an even sample of the normals
     int normalCount = 0;
     bool split = false, cut = false;
@@ -33,7 +33,8 @@ class RefinementCriteria {
   Summary look(const OctreeBuilder& builder, const OctreeBuilder::Node& n) const;
   bool facing(const Vec3& normalA, const Vec3& normalB, const Vec3& between) const;
   bool disagree(const Summary& a, const Summary& b) const;
-  static void fillIslands(const OctreeBuilder& builder, const std::vector<Id>& batch, std::vector<std::uint8_t>& split);
+  static void fillIslands(const OctreeBuilder& builder, const std::vector<Id>& batch,
+                          std::vector<std::uint8_t>& split);
 
   const SurfaceModel& model_;
   const OctreeDecomposeOptions& options_;

@@ -51,7 +51,8 @@ void snapRounds(NodeMover& mover, const WallSurface& wall, const DistanceField& 
   }
 }
 
-/// Gaps below half a cell are seams of unstitched patches: the octree has sealed them. Wider ones are the user's to name.
+/// Gaps below half a cell are seams of unstitched patches: the octree has sealed them. Wider ones are the
+/// user's to name.
 FeatureOptions effective(FeatureOptions features, const PolyMesh& mesh) {
   constexpr double kGap = 0.5;
   if (features.gapTolerance <= 0) features.gapTolerance = kGap * mesh.finestSize;

@@ -15,11 +15,12 @@ struct ResolveFeaturesOptions {
 };
 
 struct ResolveFeaturesReport {
-  double featureLength = 0, resolvedLength = 0;  ///< length of all curves; of the parts that mesh edges lie on
+  double featureLength = 0,
+         resolvedLength = 0;  ///< length of all curves; of the parts that mesh edges lie on
   Id corners = 0, resolvedCorners = 0;
 };
 
-void resolveFeatures(PolyMesh& mesh, DistanceField& field, const ResolveFeaturesOptions& options, Monitor& monitor,
-                     ResolveFeaturesReport* report = nullptr);
+void resolveFeatures(PolyMesh& mesh, DistanceField& field, const ResolveFeaturesOptions& options,
+                     Monitor& monitor, ResolveFeaturesReport* report = nullptr);
 
 }  // namespace pm

@@ -19,11 +19,21 @@ constexpr Id kNone = -1;
 struct Error : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
-struct InputError : Error { using Error::Error; };    ///< geometry or an option cannot be used
-struct RegionError : Error { using Error::Error; };   ///< nothing to mesh, or the chosen region leaks
-struct BudgetError : Error { using Error::Error; };   ///< the estimate exceeds the cell budget
-struct AbortError : Error { using Error::Error; };    ///< the user asked to stop
-struct InternalError : Error { using Error::Error; }; ///< a promise of the kernel was broken; a bug
+struct InputError : Error {
+  using Error::Error;
+};  ///< geometry or an option cannot be used
+struct RegionError : Error {
+  using Error::Error;
+};  ///< nothing to mesh, or the chosen region leaks
+struct BudgetError : Error {
+  using Error::Error;
+};  ///< the estimate exceeds the cell budget
+struct AbortError : Error {
+  using Error::Error;
+};  ///< the user asked to stop
+struct InternalError : Error {
+  using Error::Error;
+};  ///< a promise of the kernel was broken; a bug
 
 /// Axis-aligned box; empty (lo > hi) until a point is added.
 struct Box {
@@ -37,13 +47,13 @@ struct Box {
   Vec3 size() const { return hi - lo; }
   Vec3 centre() const { return 0.5 * (lo + hi); }
   double diagonal() const { return empty() ? 0.0 : size().norm(); }
-  bool contains(const Vec3& p) const { return (p.array() >= lo.array()).all() && (p.array() <= hi.array()).all(); }
+  bool contains(const Vec3& p) const {
+    return (p.array() >= lo.array()).all() && (p.array() <= hi.array()).all();
+  }
   bool overlaps(const Box& b) const {
     return (lo.array() <= b.hi.array()).all() && (b.lo.array() <= hi.array()).all();
   }
-  double distance2(const Vec3& p) const {
-    return (lo - p).cwiseMax(p - hi).cwiseMax(0.0).squaredNorm();
-  }
+  double distance2(const Vec3& p) const { return (lo - p).cwiseMax(p - hi).cwiseMax(0.0).squaredNorm(); }
 };
 
 /// A read-only run of consecutive values, one row of a Csr.
@@ -58,7 +68,8 @@ struct Span {
   const T& operator[](std::size_t i) const { return first[i]; }
 };
 
-/// Rows of different length in two flat arrays (compressed sparse rows): row i is values[offsets[i] .. offsets[i+1]).
+/// Rows of different length in two flat arrays (compressed sparse rows): row i is values[offsets[i] ..
+/// offsets[i+1]).
 template <class T>
 struct Csr {
   std::vector<Id> offsets{0};

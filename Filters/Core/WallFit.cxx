@@ -9,8 +9,8 @@
 namespace pm {
 namespace {
 
-// In units of the finest cell: how far a node may leave the geometry, and the distance beyond which a point's error
-// is no chord's but a feature's that no shift of nodes would mend.
+// In units of the finest cell: how far a node may leave the geometry, and the distance beyond which a point's
+// error is no chord's but a feature's that no shift of nodes would mend.
 constexpr double kMostShift = 0.045, kMostChord = 0.12, kFar = 0.05;
 constexpr int kFitSweeps = 1, kSearchSweeps = 3;
 // Search along the surface: steps in length scales, and the gain that makes a new place worth it.
@@ -18,7 +18,8 @@ constexpr double kSteps[] = {0.5, 0.25, 0.1};
 constexpr double kGain = 0.95;
 constexpr std::size_t kMostPoints = 48;
 
-/// The representative points around a node: itself, the middles of its edges on the wall, the centres of its faces.
+/// The representative points around a node: itself, the middles of its edges on the wall, the centres of its
+/// faces.
 struct Around {
   std::array<Vec3, kMostPoints> points;
   std::size_t count = 0;
@@ -40,14 +41,16 @@ class WallFitter {
     n.normalize();
     double lowest = 0, highest = 0, own = 0;
     const double before = look(p, n, &lowest, &highest, &own);
-    const double shift = std::clamp(0.5 * (lowest + highest), own - kMostShift * unit_, own + kMostShift * unit_);
+    const double shift =
+        std::clamp(0.5 * (lowest + highest), own - kMostShift * unit_, own + kMostShift * unit_);
     if (std::abs(shift) < 0.002 * unit_) return;
     const Vec3 old = mover_.point(p);
-    if (mover_.move(p, old + shift * n) && look(p, n, nullptr, nullptr, nullptr) >= before) mover_.move(p, old);
+    if (mover_.move(p, old + shift * n) && look(p, n, nullptr, nullptr, nullptr) >= before)
+      mover_.move(p, old);
   }
 
-  // Maximum approximation (4.7.5): where a face stays off the geometry, often at an edge that found no path, the node
-  // tries places around it on the surface.
+  // Maximum approximation (4.7.5): where a face stays off the geometry, often at an edge that found no path,
+  // the node tries places around it on the surface.
   void search(Id p) {
     const Id row = wall_.rowOf[p];
     Vec3 n = Vec3::Zero();
@@ -70,8 +73,8 @@ class WallFitter {
   }
 
  private:
-  // Sum of the points' capped distances to the fourth power, close to the largest of them but smooth; and the range
-  // of their signed distances along n (positive: the geometry lies outward).
+  // Sum of the points' capped distances to the fourth power, close to the largest of them but smooth; and the
+  // range of their signed distances along n (positive: the geometry lies outward).
   double look(Id p, const Vec3& n, double* lowest, double* highest, double* own) const {
     const Id row = wall_.rowOf[p];
     const Vec3& x = mover_.point(p);

@@ -30,7 +30,8 @@ PolyMesh front(const SurfaceModel& model, double size, bool outside) {
 }
 
 Id wallFaces(const PolyMesh& mesh) {
-  return static_cast<Id>(std::count_if(mesh.patch.begin(), mesh.patch.end(), [&](Id p) { return mesh.isWallPatch(p); }));
+  return static_cast<Id>(
+      std::count_if(mesh.patch.begin(), mesh.patch.end(), [&](Id p) { return mesh.isWallPatch(p); }));
 }
 
 TEST(DummyLayer, OnePrismOnEachFrontFaceAndValid) {
@@ -60,7 +61,8 @@ TEST(DummyLayer, StaysOnTheDomainSides) {
   o.domain.add(Vec3(3, 3, 4));
   PaintFrontOptions p;
   p.region = Region::Outside;
-  const PolyMesh mesh = dummyLayer(paintFront(decompose(*model, o, monitor), *model, p, monitor), {}, monitor);
+  const PolyMesh mesh =
+      dummyLayer(paintFront(decompose(*model, o, monitor), *model, p, monitor), {}, monitor);
   EXPECT_EQ(checkTopology(mesh), "");
   int onFloor = 0;
   for (std::size_t i = 0; i < mesh.points.size(); ++i)
@@ -130,7 +132,8 @@ TEST(NodeMover, PointsOfAColourTouchNothingInCommon) {
     for (Id p : group)
       for (Id c : mover.cellsOf(p))
         for (Id f : faces[c]) {
-          const Id other = mesh.owner[f] == c ? (f < mesh.internalFaces() ? mesh.neighbour[f] : c) : mesh.owner[f];
+          const Id other =
+              mesh.owner[f] == c ? (f < mesh.internalFaces() ? mesh.neighbour[f] : c) : mesh.owner[f];
           EXPECT_TRUE(writer[other] == kNone || writer[other] == p);
         }
   }

@@ -119,7 +119,8 @@ TEST(Octree, EveryTriangleIsInEveryLeafItTouchesAndInNoOther) {
       for (int i = 0; i <= 40 && !inside; ++i)
         for (int j = 0; i + j <= 40 && !inside; ++j) {
           const double u = i / 40.0, v = j / 40.0;
-          inside = box.contains((1 - u - v) * model->corner(t, 0) + u * model->corner(t, 1) + v * model->corner(t, 2));
+          inside = box.contains((1 - u - v) * model->corner(t, 0) + u * model->corner(t, 1) +
+                                v * model->corner(t, 2));
         }
       const bool listed = std::binary_search(list.begin(), list.end(), t);
       EXPECT_TRUE(listed || !inside) << "leaf " << leaf << " triangle " << t;

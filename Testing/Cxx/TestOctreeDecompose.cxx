@@ -70,7 +70,8 @@ TEST(OctreeDecompose, BoxesPatchesAndSurfaceSizesAreKept) {
   const Octree tree = run(*model, o);
   EXPECT_LE(tree.brick.edge(tree.levels[tree.locate(Vec3(0.5, 0.5, 0.5))]), 0.1);
   for (Id leaf = 0; leaf < tree.size(); ++leaf)
-    for (Id t : tree.triangles[leaf]) EXPECT_TRUE(model->patchOf(t) != 0 || tree.brick.edge(tree.levels[leaf]) <= 0.06);
+    for (Id t : tree.triangles[leaf])
+      EXPECT_TRUE(model->patchOf(t) != 0 || tree.brick.edge(tree.levels[leaf]) <= 0.06);
 }
 
 TEST(OctreeDecompose, FacingPlatesAreSeparated) {

@@ -164,7 +164,8 @@ TEST(PaintFront, RandomSoupsGiveSoundFronts) {
   o.baseSize = 0.5;
   PaintFrontOptions front;
   front.region = Region::Outside;
-  for (unsigned seed = 0; seed < 8; ++seed) expectSound(paint(*randomSoup(60, 0.3, seed).model(), 0.0625, front, o));
+  for (unsigned seed = 0; seed < 8; ++seed)
+    expectSound(paint(*randomSoup(60, 0.3, seed).model(), 0.0625, front, o));
 }
 
 }  // namespace
