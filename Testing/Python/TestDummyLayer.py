@@ -15,14 +15,14 @@ class TestDummyLayer(unittest.TestCase):
 
     def test_thickness_is_the_height_over_the_cell_size(self):
         heights = []
-        for thickness in (0.1, 0.3):
+        for thickness in (0.2, 0.4):  # thinner prisms are below the limit on degradation, and are raised
             stages = chain(sphere(), 0.1, last=3, Thickness=thickness, SurfaceSize=0.1)
             found = arrays(stages[2].GetOutput())
             wall = found["point Base"] >= 0
             step = found["points"][wall] - found["points"][found["point Base"][wall]]
             heights.append(np.median(np.linalg.norm(step, axis=1)))
         self.assertGreater(heights[0], 0)
-        self.assertAlmostEqual(heights[1] / heights[0], 3, delta=0.6)
+        self.assertAlmostEqual(heights[1] / heights[0], 2, delta=0.3)
 
     def test_octree_is_refused(self):
         (octree,) = chain(sphere(), 0.1, last=1)
