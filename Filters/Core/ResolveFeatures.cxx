@@ -3,6 +3,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include <cmath>
+
 #include "FeatureCoverage.h"
 #include "FeaturePaths.h"
 #include "FeatureSnapper.h"
@@ -59,15 +61,17 @@ FeatureOptions effective(FeatureOptions features, const PolyMesh& mesh) {
   return features;
 }
 
-/// Wall rows that lie on a feature.
-std::vector<std::uint8_t> onFeatures(const PolyMesh& mesh, const WallSurface& wall,
-                                     const FeatureGraph& graph) {
-  constexpr double kOn = 1e-3;  // length scales, as for reaching a target
-  std::vector<std::uint8_t> on(wall.nodes.size(), 0);
+/// Nodes on features stay; smooth parts of the wall only shift, so that they keep their even mesh.
+std::vector<FitRole> fitRoles(const PolyMesh& mesh, const WallSurface& wall, const FeatureGraph& graph) {
+  constexpr double kOn = 1e-3, kNear = 2;  // length scales; the first is what reaches a target
+  std::vector<FitRole> roles(wall.nodes.size(), FitRole::Shift);
   tbb::parallel_for(Id(0), wall.size(), [&](Id row) {
-    on[row] = graph.closest(mesh.points[wall.nodes[row]], kOn * wall.scale[row]).segment != kNone;
+    const double reach = kNear * wall.scale[row];
+    const ClosestOnFeature on = graph.closest(mesh.points[wall.nodes[row]], reach);
+    if (on.segment == kNone) return;
+    roles[row] = on.distance2 <= std::pow(kOn * wall.scale[row], 2) ? FitRole::Keep : FitRole::Search;
   });
-  return on;
+  return roles;
 }
 
 }  // namespace
@@ -83,7 +87,7 @@ void resolveFeatures(PolyMesh& mesh, DistanceField& field, const ResolveFeatures
     NodeMover mover(mesh, options.limits, &monitor);
     if (!graph.curves().empty()) snapRounds(mover, wall, field, graph, options, monitor);
     monitor.check(0.85, "fitting faces");
-    fitWall(mover, wall, field, onFeatures(mesh, wall, graph));
+    fitWall(mover, wall, field, fitRoles(mesh, wall, graph));
   }
   monitor.check(0.9, "patches");
   assignWallPatches(mesh, field);

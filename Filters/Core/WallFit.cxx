@@ -107,17 +107,19 @@ class WallFitter {
 }  // namespace
 
 void fitWall(NodeMover& mover, const WallSurface& wall, const DistanceField& field,
-             const std::vector<std::uint8_t>& keep) {
-  std::vector<Id> free;
-  for (Id row = 0; row < wall.size(); ++row)
-    if (!keep[row]) free.push_back(wall.nodes[row]);
-  const auto groups = mover.colour(free);
+             const std::vector<FitRole>& roles) {
+  std::vector<Id> free, searching;
+  for (Id row = 0; row < wall.size(); ++row) {
+    if (roles[row] != FitRole::Keep) free.push_back(wall.nodes[row]);
+    if (roles[row] == FitRole::Search) searching.push_back(wall.nodes[row]);
+  }
+  const auto freeGroups = mover.colour(free), searchGroups = mover.colour(searching);
   WallFitter fitter(mover, wall, field);
-  // What the fit alone settles (chords of smooth surfaces) is no reason to wander along the surface.
-  for (int sweep = 0; sweep < kFitSweeps; ++sweep) mover.forEach(groups, [&](Id p) { fitter.fit(p); });
+  const auto shift = [&] { mover.forEach(freeGroups, [&](Id p) { fitter.fit(p); }); };
+  for (int sweep = 0; sweep < kFitSweeps; ++sweep) shift();
   for (int sweep = 0; sweep < kSearchSweeps; ++sweep) {
-    mover.forEach(groups, [&](Id p) { fitter.search(p); });
-    mover.forEach(groups, [&](Id p) { fitter.fit(p); });
+    mover.forEach(searchGroups, [&](Id p) { fitter.search(p); });
+    shift();
   }
 }
 

@@ -14,11 +14,18 @@
 
 namespace pm {
 
-/// Passes: nodes beside faces that are off the geometry search along the surface for a better place; then all
-/// shift. keep: #W rows of `wall` whose nodes stay where they are (they lie on features). A shift is at most
-/// 0.045 of the finest cell and kept only if it is valid and the faces' representative points get nearer to
-/// the geometry.
+/// What a wall node may do in the fit.
+enum class FitRole : std::uint8_t {
+  Shift,   ///< shift along the normal
+  Search,  ///< and look for a better place along the surface: it is near a feature, where faces may stay off
+           ///< it
+  Keep,    ///< stay: it lies on a feature
+};
+
+/// roles: #W, of the rows of `wall`. All but the kept nodes shift by at most 0.045 of the finest cell; those
+/// near features also search where that leaves a face off the geometry. A move is kept only if it is valid
+/// and the faces' representative points get nearer to the geometry.
 void fitWall(NodeMover& mover, const WallSurface& wall, const DistanceField& field,
-             const std::vector<std::uint8_t>& keep);
+             const std::vector<FitRole>& roles);
 
 }  // namespace pm
