@@ -63,7 +63,7 @@ FeatureOptions effective(FeatureOptions features, const PolyMesh& mesh) {
 
 /// Nodes on features stay; smooth parts of the wall only shift, so that they keep their even mesh.
 std::vector<FitRole> fitRoles(const PolyMesh& mesh, const WallSurface& wall, const FeatureGraph& graph) {
-  constexpr double kOn = 1e-3, kNear = 2;  // length scales; the first is what reaches a target
+  constexpr double kOn = 1e-3, kNear = 2.5;  // length scales; the first is what reaches a target
   std::vector<FitRole> roles(wall.nodes.size(), FitRole::Shift);
   tbb::parallel_for(Id(0), wall.size(), [&](Id row) {
     const double reach = kNear * wall.scale[row];

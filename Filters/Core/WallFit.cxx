@@ -12,7 +12,7 @@ namespace {
 // In units of the finest cell: how far a node may leave the geometry, and the distance beyond which a point's
 // error is no chord's but a feature's that no shift of nodes would mend.
 constexpr double kMostShift = 0.045, kMostChord = 0.12, kFar = 0.05;
-constexpr int kFitSweeps = 1, kSearchSweeps = 3;
+constexpr int kFitSweeps = 1, kSearchSweeps = 5;
 // Search along the surface: steps in length scales, and the gain that makes a new place worth it.
 constexpr double kSteps[] = {0.5, 0.25, 0.1};
 constexpr double kGain = 0.95;
