@@ -60,6 +60,12 @@ class NodeMover {
   Span<Id> facesOf(Id p) const { return pointFaces_[p]; }
   const Vec3& faceCentre(Id f) const { return faces_[f].shape.centre; }
   const Vec3& faceNormal(Id f) const { return faces_[f].shape.normal; }  ///< length = area, leaves the owner
+  /// Sum of the faces' area vectors; of the wall faces around a node, its outward direction there.
+  Vec3 areaVector(Span<Id> faces) const {
+    Vec3 sum = Vec3::Zero();
+    for (Id f : faces) sum += faces_[f].shape.normal;
+    return sum;
+  }
   const Vec3& cellCentre(Id c) const { return cells_[c].centre; }
 
  private:

@@ -74,8 +74,7 @@ class Projector {
 
   /// Outward unit normal of the wall at a node, from the faces around it.
   Vec3 normalAt(Id p) const {
-    Vec3 n = Vec3::Zero();
-    for (Id f : wall_.faces[wall_.rowOf[p]]) n += mover_.faceNormal(f);
+    const Vec3 n = mover_.areaVector(wall_.faces[wall_.rowOf[p]]);
     const double length = n.norm();
     return length > 0 ? Vec3(n / length) : n;
   }

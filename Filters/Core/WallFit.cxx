@@ -35,8 +35,7 @@ class WallFitter {
 
   void fit(Id p) {
     const Id row = wall_.rowOf[p];
-    Vec3 n = Vec3::Zero();
-    for (Id f : wall_.faces[row]) n += mover_.faceNormal(f);
+    Vec3 n = mover_.areaVector(wall_.faces[row]);
     if (!(n.norm() > 0)) return;
     n.normalize();
     double lowest = 0, highest = 0, own = 0;
@@ -53,8 +52,7 @@ class WallFitter {
   // the node tries places around it on the surface.
   void search(Id p) {
     const Id row = wall_.rowOf[p];
-    Vec3 n = Vec3::Zero();
-    for (Id f : wall_.faces[row]) n += mover_.faceNormal(f);
+    const Vec3 n = mover_.areaVector(wall_.faces[row]);
     double best = look(p, n, nullptr, nullptr, nullptr);
     if (!(n.norm() > 0) || best < std::pow(kFar, 4)) return;
     const Vec3 u = n.unitOrthogonal(), v = n.normalized().cross(u);
