@@ -6,8 +6,10 @@
 #include <openvdb/openvdb.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <filesystem>
 
 namespace pm {
 
@@ -136,11 +138,17 @@ void DistanceField::save(const std::string& vdbFile) const {
     grid->insertMeta(kHash, openvdb::Int64Metadata(static_cast<openvdb::Int64>(model_.contentHash())));
     grid->insertMeta(kVoxelSize, openvdb::DoubleMetadata(grids_->size));
   }
+  // Under another name first: whoever reads the cache meanwhile finds the old file or the new one, never a
+  // part.
+  const std::string unfinished = fmt::format("{}.{}.part", vdbFile, ::getpid());
   try {
-    openvdb::io::File file(vdbFile);
+    openvdb::io::File file(unfinished);
     file.write(grids);
     file.close();
+    std::filesystem::rename(unfinished, vdbFile);
   } catch (const std::exception& e) {
+    std::error_code ignored;
+    std::filesystem::remove(unfinished, ignored);
     throw InputError(fmt::format("Cannot write the distance field to {}: {}.", vdbFile, e.what()));
   }
 }

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <set>
 
@@ -32,9 +35,10 @@ void expectExact(const DistanceField& field, const std::vector<Vec3>& points) {
   }
 }
 
-/// A file that is gone when the test is over.
+/// A file of the running test's own (tests run side by side), gone when it is over.
 struct TemporaryFile {
-  std::string path = ::testing::TempDir() + "DistanceFieldTest.vdb";
+  std::string path = fmt::format("{}{}-{}.vdb", ::testing::TempDir(),
+                                 ::testing::UnitTest::GetInstance()->current_test_info()->name(), ::getpid());
   ~TemporaryFile() { std::remove(path.c_str()); }
 };
 
@@ -118,6 +122,19 @@ TEST(DistanceField, RefusesAFileOfAnotherGeometryOrSize) {
   EXPECT_FALSE(DistanceField(*model, 0.05).load(file.path + ".missing"));
   std::ofstream(file.path) << "not a volume";
   EXPECT_FALSE(DistanceField(*model, 0.05).load(file.path));
+}
+
+TEST(DistanceField, CutFileIsACacheThatIsNotThere) {
+  const TemporaryFile file;
+  const auto model = randomSoup(500, 0.1, 4).model();
+  DistanceField field(*model, 0.05);
+  field.fill(somePoints(model->bounds(), 2000, 6));
+  field.save(file.path);
+  const auto size = std::filesystem::file_size(file.path);
+  for (const double part : {0.9, 0.5, 0.1, 0.0}) {
+    std::filesystem::resize_file(file.path, static_cast<std::uintmax_t>(part * static_cast<double>(size)));
+    EXPECT_FALSE(DistanceField(*model, 0.05).load(file.path)) << part;
+  }
 }
 
 TEST(DistanceField, SaysWhyItCannotSave) {
