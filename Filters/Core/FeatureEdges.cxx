@@ -204,8 +204,11 @@ FeatureGraph detectFeatures(const SurfaceModel& model, const FeatureOptions& opt
   std::vector<OpenEdge> open;
   EdgeClassifier(model, options).run(network, open);
   open = chooseOpenEdges(model, std::move(open), options);
+  const double trusted = kTrustedHeight * model.bounds().diagonal();
+  if (options.intersections)
+    addIntersections(model, options, std::max(trusted, options.gapTolerance), trusted, network, open);
   addOpenEdges(network, open, options.gapTolerance);
-  const double reach = std::max(kTrustedHeight * model.bounds().diagonal(), 4 * options.gapTolerance);
+  const double reach = std::max(trusted, 4 * options.gapTolerance);
   return traceCurves(network, options, reach);
 }
 

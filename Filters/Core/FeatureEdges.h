@@ -11,16 +11,23 @@ namespace pm {
 struct FeatureOptions {
   double sharpAngle =
       30;  ///< degrees between the planes of two triangles at an edge; independent of orientation
-  double cornerAngle = 45;  ///< degrees a curve may turn at a point before the point becomes a corner
-  bool interfaces = true;   ///< edges between patches are features
-  bool openEdges = false;   ///< every open edge is a feature
+  double cornerAngle = 45;    ///< degrees a curve may turn at a point before the point becomes a corner
+  bool interfaces = true;     ///< edges between patches are features
+  bool openEdges = false;     ///< every open edge is a feature
+  bool intersections = true;  ///< curves where the surface cuts itself at more than sharpAngle are features
   double gapTolerance =
       0;  ///< length; an open edge this close to a triangle whose plane differs by more than
           ///< sharpAngle, or to one of another patch, is a feature too (unstitched geometry)
   double shortestCurve = 0;  ///< length; shorter open-ended curves that join nothing are dropped
 };
 
-enum FeatureKind : std::uint8_t { kSharpEdge = 1, kInterfaceEdge = 2, kOpenEdge = 4, kNonManifoldEdge = 8 };
+enum FeatureKind : std::uint8_t {
+  kSharpEdge = 1,
+  kInterfaceEdge = 2,
+  kOpenEdge = 4,
+  kNonManifoldEdge = 8,
+  kIntersectionEdge = 16  ///< no edge of the input: two triangles cut each other there
+};
 
 struct FeatureSegment {
   Vec3 a, b;

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "Bvh.h"
 #include "FeatureEdges.h"
 
 namespace pm {
@@ -21,8 +22,37 @@ struct FeatureNetwork {
     Id a, b;            // a < b
     std::uint8_t kind;  // FeatureKind bits
   };
-  std::vector<Vec3> points;  // the model's, by the same ids; welding moves some
-  std::vector<Link> links;   // each pair of points once, ascending
+  using Links = std::vector<Link>;
+  std::vector<Vec3> points;  // the model's, by the same ids, then those of intersections; welding moves some
+  Links links;               // each pair of points once, ascending
+};
+
+/// Each pair of points once, ascending, with the kinds of all its links.
+void unifyLinks(FeatureNetwork::Links& links);
+
+/// Splits links at points beside them; splits: (row of the link, point), any order.
+void splitLinks(const std::vector<Vec3>& points, FeatureNetwork::Links& links,
+                std::vector<std::pair<Id, Id>> splits);
+
+/// A place on a link.
+struct LinkFoot {
+  Vec3 point = Vec3::Zero();
+  double distance2 = std::numeric_limits<double>::infinity();
+  Id link = kNone;
+};
+
+/// Finds the nearest place on some links; ties go to the first link. Thread-safe.
+class LinkLookup {
+ public:
+  LinkLookup(const std::vector<Vec3>& points, const FeatureNetwork::Links& links);
+  /// Nothing farther than the square root of bound2; of links within 30 degrees of the direction only, when
+  /// it is not zero.
+  LinkFoot nearest(const Vec3& p, double bound2, const Vec3& direction = Vec3::Zero()) const;
+
+ private:
+  const std::vector<Vec3>& points_;
+  const FeatureNetwork::Links& links_;
+  Bvh bvh_;
 };
 
 /// An edge of one triangle only.
@@ -34,6 +64,13 @@ struct OpenEdge {
 /// Which open edges are features: all on request, else those near geometry they ought to be stitched to.
 std::vector<OpenEdge> chooseOpenEdges(const SurfaceModel& model, std::vector<OpenEdge> open,
                                       const FeatureOptions& options);
+
+/// Adds the curves along which triangles in planes at more than the sharp angle cut each other. Pieces that
+/// run along links already there within the tolerance, and curves shorter than it, say nothing and are left
+/// out; ends within the tolerance of a link join it. Links and open edges are split where curves meet them.
+/// Triangles lower than `trusted` have no plane: they only carry on curves of their neighbours.
+void addIntersections(const SurfaceModel& model, const FeatureOptions& options, double tolerance,
+                      double trusted, FeatureNetwork& network, std::vector<OpenEdge>& open);
 
 /// Adds open edges to the network. Borders within the tolerance of each other or of links already there are
 /// welded into one line: points join points, then points split the links they lie on, then equal links are

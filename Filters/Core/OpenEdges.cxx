@@ -54,12 +54,6 @@ Box boxOf(const Vec3& p) {
   return box;
 }
 
-struct Foot {
-  Vec3 point = Vec3::Zero();
-  double distance2 = std::numeric_limits<double>::infinity();
-  Id link = kNone;
-};
-
 class Welder {
  public:
   Welder(FeatureNetwork& network, double tolerance)
@@ -72,19 +66,19 @@ class Welder {
     for (const OpenEdge& e : open) loose.push_back({e.a, e.b, kOpenEdge});
     if (tolerance2_ > 0) {
       joinPoints(loose);
-      unify(loose);
-      loose = split(loose);
-      unify(loose);
-      const Bvh firm = bvhOver(network_.links);
+      unifyLinks(loose);
+      split(loose);
+      unifyLinks(loose);
+      const LinkLookup firm(network_.points, network_.links);
       dropCovered(loose, firm);
       splitFirm(loose, firm);
     }
     network_.links.insert(network_.links.end(), loose.begin(), loose.end());
-    unify(network_.links);
+    unifyLinks(network_.links);
   }
 
  private:
-  using Links = std::vector<FeatureNetwork::Link>;
+  using Links = FeatureNetwork::Links;
 
   static std::vector<Id> pointsOf(const Links& links) {
     std::vector<Id> ids;
@@ -92,15 +86,6 @@ class Welder {
     std::sort(ids.begin(), ids.end());
     ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
     return ids;
-  }
-
-  Bvh bvhOver(const Links& links) const {
-    std::vector<Box> boxes(links.size());
-    for (std::size_t i = 0; i < links.size(); ++i) {
-      boxes[i].add(at(links[i].a));
-      boxes[i].add(at(links[i].b));
-    }
-    return Bvh(boxes);
   }
 
   Bvh bvhOver(const std::vector<Id>& points) const {
@@ -157,24 +142,8 @@ class Welder {
     return best;
   }
 
-  /// Nearest place within the tolerance on the links that were there before.
-  Foot footOnFirm(const Bvh& bvh, const Vec3& p) const {
-    Foot best;
-    const auto offer = [&](Id slot) {
-      Foot found;
-      found.link = bvh.order()[slot];
-      closestOnEdge(p, at(network_.links[found.link].a), at(network_.links[found.link].b), found);
-      if (found.distance2 > tolerance2_) return;
-      if (found.distance2 < best.distance2 || (found.distance2 == best.distance2 && found.link < best.link))
-        best = found;
-    };
-    bvh.nearest(
-        p, [&] { return std::min(tolerance2_, best.distance2); }, offer);
-    return best;
-  }
-
-  /// Every loose link split at the loose points within the tolerance of it.
-  Links split(const Links& loose) const {
+  /// Splits every loose link at the loose points within the tolerance of it.
+  void split(Links& loose) const {
     const std::vector<Id> points = pointsOf(loose);
     const Bvh bvh = bvhOver(points);
     std::vector<std::vector<Id>> on(loose.size());
@@ -182,28 +151,27 @@ class Welder {
       const auto& link = loose[i];
       const auto offer = [&](Id slot) {
         const Id p = points[bvh.order()[slot]];
-        Foot foot;
+        LinkFoot foot;
         closestOnEdge(at(p), at(link.a), at(link.b), foot);
         if (p != link.a && p != link.b && foot.distance2 <= tolerance2_) on[i].push_back(p);
       };
       forBoxesAlong(link, [&](const Box& box) { bvh.overlapping(box, offer); });
-      std::sort(on[i].begin(), on[i].end());
-      on[i].erase(std::unique(on[i].begin(), on[i].end()), on[i].end());
     });
-    Links out;
-    for (std::size_t i = 0; i < loose.size(); ++i) appendPieces(loose[i], on[i], out);
-    return out;
+    std::vector<std::pair<Id, Id>> splits;
+    for (std::size_t i = 0; i < loose.size(); ++i)
+      for (Id p : on[i]) splits.push_back({static_cast<Id>(i), p});
+    splitLinks(network_.points, loose, std::move(splits));
   }
 
   /// Loose links that run along links already there say nothing new.
-  void dropCovered(Links& loose, const Bvh& firm) const {
+  void dropCovered(Links& loose, const LinkLookup& firm) const {
     std::vector<std::uint8_t> covered(loose.size(), 0);
     tbb::parallel_for(std::size_t(0), loose.size(), [&](std::size_t i) {
       const Vec3& a = at(loose[i].a);
       const Vec3& b = at(loose[i].b);
       covered[i] = 1;
       for (const double place : {0.0, 0.25, 0.5, 0.75, 1.0})
-        if (footOnFirm(firm, a + place * (b - a)).link == kNone) covered[i] = 0;
+        if (firm.nearest(a + place * (b - a), tolerance2_).link == kNone) covered[i] = 0;
     });
     std::size_t kept = 0;
     for (std::size_t i = 0; i < loose.size(); ++i)
@@ -212,24 +180,16 @@ class Welder {
   }
 
   /// Loose points beside a link already there move onto it and split it.
-  void splitFirm(const Links& loose, const Bvh& firm) {
+  void splitFirm(const Links& loose, const LinkLookup& firm) {
     std::vector<std::pair<Id, Id>> splits;  // (link, point)
     for (Id p : pointsOf(loose)) {
       if (firm_[p]) continue;
-      const Foot foot = footOnFirm(firm, at(p));
+      const LinkFoot foot = firm.nearest(at(p), tolerance2_);
       if (foot.link == kNone) continue;
       network_.points[p] = foot.point;
       splits.push_back({foot.link, p});
     }
-    std::sort(splits.begin(), splits.end());
-    Links out;
-    auto next = splits.begin();
-    for (Id i = 0; i < static_cast<Id>(network_.links.size()); ++i) {
-      std::vector<Id> on;
-      for (; next != splits.end() && next->first == i; ++next) on.push_back(next->second);
-      appendPieces(network_.links[i], on, out);
-    }
-    network_.links = std::move(out);
+    splitLinks(network_.points, network_.links, std::move(splits));
   }
 
   /// Boxes that cover all points within the tolerance of a link; small ones, for a long slanting link's own
@@ -246,38 +206,6 @@ class Welder {
       box.hi.array() += tolerance;
       body(box);
     }
-  }
-
-  /// Pieces of a link between the given points beside it, in the order of their place along it.
-  void appendPieces(const FeatureNetwork::Link& link, const std::vector<Id>& on, Links& out) const {
-    const Vec3& a = at(link.a);
-    const Vec3 d = at(link.b) - a;
-    std::vector<std::pair<double, Id>> places;
-    for (Id p : on) places.push_back({(at(p) - a).dot(d), p});
-    std::sort(places.begin(), places.end());
-    Id last = link.a;
-    const auto append = [&](Id next) {
-      out.push_back({std::min(last, next), std::max(last, next), link.kind});
-      last = next;
-    };
-    for (const auto& [place, p] : places)
-      if (place > 0 && place < d.squaredNorm()) append(p);
-    append(link.b);
-  }
-
-  /// Each pair of points once, with the kinds of all its links.
-  static void unify(Links& links) {
-    std::sort(links.begin(), links.end(), [](const auto& x, const auto& y) {
-      return x.a != y.a ? x.a < y.a : x.b != y.b ? x.b < y.b : x.kind < y.kind;
-    });
-    std::size_t kept = 0;
-    for (const auto& link : links) {
-      if (kept > 0 && links[kept - 1].a == link.a && links[kept - 1].b == link.b)
-        links[kept - 1].kind |= link.kind;
-      else
-        links[kept++] = link;
-    }
-    links.resize(kept);
   }
 
   FeatureNetwork& network_;

@@ -264,7 +264,9 @@ TEST(FeatureEdges, UnstitchedCubeIsACube) {
     const double gap = 1e-3;
     const Soup soup = unstitchedCube(gap, same);
     FeatureOptions options;
+    options.intersections = false;
     EXPECT_TRUE(detect(soup, options).segments().empty());
+    options.intersections = true;
     options.gapTolerance = 2 * gap;
     const FeatureGraph graph = detect(soup, options);
     expectConsistent(graph);

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Self-intersections that are found once for a geometry: a change of cell sizes asks for them again and
+// again.
+#pragma once
+
+#include <memory>
+
+#include "SelfIntersections.h"
+
+namespace pm {
+
+/// What selfIntersections(model) gives, found anew only when the geometry last asked for had other content.
+/// Thread-safe.
+std::shared_ptr<const SelfIntersections> knownIntersections(const SurfaceModel& model);
+
+}  // namespace pm
