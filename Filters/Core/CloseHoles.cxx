@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "CloseHoles.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "OffsetCaps.h"
+
+namespace pm {
+
+const char* const kClosedHolesPatch = "closed_holes";
+
+namespace {
+
+constexpr int kRounds = 4;  // a hole behind a hole shows only when the first is closed
+
+/// The model's triangles and what is added to them.
+class Patchwork {
+ public:
+  explicit Patchwork(const SurfaceModel& model)
+      : points_(model.points()), triangles_(model.triangles()), names_(model.patchNames()) {
+    for (Id t = 0; t < model.triangleCount(); ++t) patches_.push_back(model.patchOf(t));
+  }
+  void add(const std::vector<Vec3>& points, const std::vector<std::array<Id, 3>>& triangles) {
+    if (triangles.empty()) return;
+    const auto found = std::find(names_.begin(), names_.end(), kClosedHolesPatch);
+    const Id patch = static_cast<Id>(found - names_.begin());
+    if (found == names_.end()) names_.push_back(kClosedHolesPatch);
+    const Id first = static_cast<Id>(points_.size());
+    points_.insert(points_.end(), points.begin(), points.end());
+    for (const auto& t : triangles) triangles_.push_back({t[0] + first, t[1] + first, t[2] + first});
+    patches_.insert(patches_.end(), triangles.size(), patch);
+    added_ += static_cast<Id>(triangles.size());
+  }
+  std::unique_ptr<SurfaceModel> model() const {
+    return std::make_unique<SurfaceModel>(points_, triangles_, patches_, names_);
+  }
+  Id added() const { return added_; }
+
+ private:
+  std::vector<Vec3> points_;
+  std::vector<SurfaceModel::Triangle> triangles_;
+  std::vector<Id> patches_;
+  std::vector<std::string> names_;
+  Id added_ = 0;
+};
+
+bool wanted(const Leak& leak, const CloseHolesOptions& o) {
+  return o.maximumWidth == 0 || leak.width <= o.maximumWidth;
+}
+
+std::vector<Vec3> placesOf(const std::vector<Pocket>& pockets, const Octree& tree) {
+  std::vector<Vec3> places;
+  for (const Pocket& p : pockets) places.push_back(tree.box(p.peak).centre());
+  return places;
+}
+
+/// Search and closing of one round; holes found now are appended to the report.
+class Closer {
+ public:
+  Closer(const SurfaceModel& model, const OctreeDecomposeOptions& octree, const CloseHolesOptions& options,
+         Monitor& monitor, CloseHolesReport& report)
+      : model_(model), octree_(octree), options_(options), monitor_(monitor), report_(report), work_(model) {}
+
+  std::unique_ptr<SurfaceModel> run() {
+    current_ = work_.model();
+    LeakOptions search = options_.search;
+    search.maximumLeaks = 0;
+    search.roots = rootCellsOf(octree_);
+    for (int round = 0; round < kRounds; ++round) {
+      const Octree tree = decompose(*current_, octree_, monitor_);
+      LeakSearch found = findLeaks(tree, *current_, search, monitor_);
+      if (round == 0) {
+        report_.pockets = found.pockets;
+        // What was found once is looked for again by its place: a closed room is no room behind a narrow
+        // opening.
+        if (search.insidePoints.empty()) search.insidePoints = placesOf(found.pockets, tree);
+      }
+      const bool left = remember(found.leaks);
+      report_.tight = !left;
+      if (!left || options_.method == HoleMethod::ShowOnly) break;
+      close(tree, found.sides, round);
+    }
+    report_.addedTriangles = work_.added();
+    finish();
+    return std::move(current_);
+  }
+
+ private:
+  /// True when there is a leak that should be closed.
+  bool remember(std::vector<Leak>& leaks) {
+    fresh_.clear();
+    for (Leak& leak : leaks) {
+      const bool close = wanted(leak, options_);
+      const bool known = std::any_of(report_.holes.begin(), report_.holes.end(), [&](const Hole& h) {
+        return !h.closed && (h.leak.bottleneck - leak.bottleneck).norm() < 0.5 * leak.width;
+      });
+      if (!close && known) continue;
+      if (close) fresh_.push_back(report_.holes.size());
+      report_.holes.push_back({std::move(leak), false});
+    }
+    return !fresh_.empty();
+  }
+
+  void close(const Octree& tree, const std::vector<Side>& sides, int round) {
+    // A cap that does not seal is not made better by another one: later rounds use membranes.
+    if (options_.method == HoleMethod::Offset && round == 0) {
+      addCaps(tree, sides);
+    } else {
+      for (std::size_t h : fresh_) {
+        const Membrane& m = report_.holes[h].leak.membrane;
+        work_.add(m.points, m.triangles);
+      }
+    }
+    for (std::size_t h : fresh_) report_.holes[h].closed = true;
+    current_ = work_.model();
+  }
+
+  void addCaps(const Octree& tree, const std::vector<Side>& sides) {
+    const double cell = tree.brick.edge(tree.brick.maxLevel);
+    OffsetOptions o;
+    std::vector<const Leak*> holes;
+    for (std::size_t h : fresh_) {
+      holes.push_back(&report_.holes[h].leak);
+      o.coarseSize =
+          std::max(o.coarseSize, sealingSize(holes.back()->width, tree.brick, RootCells::FromFeature));
+    }
+    o.offset = 0.5 * cell;
+    o.overlap = 2 * cell;
+    o.finest = cell;
+    const auto inside = [&](const Vec3& p) {
+      const Id leaf = tree.locate(p);
+      return leaf != kNone && sides[leaf] == Side::Inside;
+    };
+    const Caps caps = offsetCaps(model_, octree_, o, inside, holes, monitor_);
+    report_.coarseSize = caps.coarseSize;
+    work_.add(caps.points, caps.triangles);
+  }
+
+  void finish() {
+    std::stable_sort(report_.holes.begin(), report_.holes.end(),
+                     [](const Hole& a, const Hole& b) { return a.leak.width > b.leak.width; });
+    if (options_.method != HoleMethod::ShowOnly && !report_.tight)
+      monitor_.warning(
+          fmt::format("{} leak(s) are left after {} rounds of closing; use a larger feature size.",
+                      fresh_.size(), kRounds));
+  }
+
+  const SurfaceModel& model_;
+  const OctreeDecomposeOptions& octree_;
+  const CloseHolesOptions& options_;
+  Monitor& monitor_;
+  CloseHolesReport& report_;
+  Patchwork work_;
+  std::unique_ptr<SurfaceModel> current_;
+  std::vector<std::size_t> fresh_;  // rows of report_.holes to close now
+};
+
+}  // namespace
+
+RootCells rootCellsOf(const OctreeDecomposeOptions& octree) {
+  return octree.baseSize > 0 || octree.useDomain || octree.maxLevel >= 0 ? RootCells::Unknown
+                                                                         : RootCells::FromFeature;
+}
+
+std::unique_ptr<SurfaceModel> closeHoles(const SurfaceModel& model, const OctreeDecomposeOptions& octree,
+                                         const CloseHolesOptions& options, Monitor& monitor,
+                                         CloseHolesReport* report) {
+  CloseHolesReport local;
+  CloseHolesReport& r = report ? *report : local;
+  r = {};
+  return Closer(model, octree, options, monitor, r).run();
+}
+
+}  // namespace pm

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "OffsetCaps.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "DistanceField.h"
+#include "DummyLayer.h"
+#include "PaintFront.h"
+#include "Project.h"
+
+namespace pm {
+namespace {
+
+/// The octree of a feature size, with nothing that asks for other cells.
+Octree coarseOctree(const SurfaceModel& model, OctreeDecomposeOptions octree, double size, Monitor& monitor) {
+  octree.featureSize = size;
+  octree.maxLevel = -1;
+  octree.baseSize = 0;
+  octree.useDomain = false;
+  octree.surfaceSize = size;
+  octree.patchSizes.clear();
+  octree.boxes.clear();
+  return decompose(model, octree, monitor);
+}
+
+/// The coarse mesh of the rooms, its wall on the geometry.
+PolyMesh coarseMesh(const SurfaceModel& model, const OctreeDecomposeOptions& options, double size,
+                    const InsideTest& inside, Monitor& monitor) {
+  const Octree tree = coarseOctree(model, options, size, monitor);
+  PaintFrontOptions front;
+  front.region = Region::Points;
+  for (Id leaf = 0; leaf < tree.size(); ++leaf) {
+    const Vec3 centre = tree.box(leaf).centre();
+    if (!tree.cut[leaf] && inside(centre)) front.points.push_back(centre);
+  }
+  if (front.points.empty()) throw RegionError("no cell fits inside");
+  PolyMesh mesh = dummyLayer(paintFront(tree, model, front, monitor), {}, monitor);
+  DistanceField field(model, mesh.finestSize);
+  project(mesh, field, {}, monitor);
+  return mesh;
+}
+
+// Cells larger than the widest hole seal for certain; where they are too large for the room, somewhat smaller
+// ones that happen to seal will do.
+PolyMesh coarsestThatWorks(const SurfaceModel& model, const OctreeDecomposeOptions& options, double size,
+                           const InsideTest& inside, Monitor& monitor, double& used) {
+  for (double factor : {1.0, 0.8, 0.65, 0.5}) try {
+      used = factor * size;
+      return coarseMesh(model, options, used, inside, monitor);
+    } catch (const RegionError&) {
+      continue;
+    }
+  throw RegionError(fmt::format(
+      "Cells of {:.4g}, which seal the widest hole, are too coarse for the room behind it: no cell "
+      "fits inside. Close holes coarse to fine, or give a smaller maximum width.",
+      size));
+}
+
+/// The wall as triangles about the centres of its faces, normals leaving the mesh.
+Caps wallOf(const PolyMesh& mesh) {
+  Caps caps;
+  caps.points = mesh.points;
+  for (Id b = 0; b < mesh.boundaryFaces(); ++b) {
+    if (!mesh.isWallPatch(mesh.patch[b])) continue;
+    const Span<Id> face = mesh.faces[mesh.internalFaces() + b];
+    Vec3 centre = Vec3::Zero();
+    for (Id p : face) centre += mesh.points[p];
+    const Id middle = static_cast<Id>(caps.points.size());
+    caps.points.push_back(centre / double(face.size()));
+    for (std::size_t k = 0; k < face.size(); ++k)
+      caps.triangles.push_back({face[k], face[(k + 1) % face.size()], middle});
+  }
+  return caps;
+}
+
+double longestEdge(const Caps& caps, const std::array<Id, 3>& t) {
+  double longest = 0;
+  for (int k = 0; k < 3; ++k)
+    longest = std::max(longest, (caps.points[t[k]] - caps.points[t[(k + 1) % 3]]).norm());
+  return longest;
+}
+
+/// Only triangles within reach of a hole's membrane, and the points they use.
+Caps nearHoles(const Caps& caps, const std::vector<const Leak*>& holes, double reach) {
+  std::vector<Vec3> points;
+  std::vector<SurfaceModel::Triangle> triangles;
+  for (const Leak* hole : holes) {
+    const Id first = static_cast<Id>(points.size());
+    points.insert(points.end(), hole->membrane.points.begin(), hole->membrane.points.end());
+    for (const auto& t : hole->membrane.triangles)
+      triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  }
+  const SurfaceModel membranes(points, triangles, std::vector<Id>(triangles.size(), 0), {"membranes"});
+  std::vector<std::uint8_t> keep(caps.triangles.size());
+  tbb::parallel_for(std::size_t(0), caps.triangles.size(), [&](std::size_t i) {
+    const auto& t = caps.triangles[i];
+    const Vec3 centre = (caps.points[t[0]] + caps.points[t[1]] + caps.points[t[2]]) / 3;
+    keep[i] = std::sqrt(membranes.closest(centre).distance2) <= reach + longestEdge(caps, t);
+  });
+  Caps out;
+  std::vector<Id> number(caps.points.size(), kNone);
+  for (std::size_t i = 0; i < keep.size(); ++i) {
+    if (!keep[i]) continue;
+    std::array<Id, 3> ids;
+    for (int k = 0; k < 3; ++k) {
+      Id& n = number[caps.triangles[i][k]];
+      if (n == kNone) {
+        n = static_cast<Id>(out.points.size());
+        out.points.push_back(caps.points[caps.triangles[i][k]]);
+      }
+      ids[k] = n;
+    }
+    out.triangles.push_back(ids);
+  }
+  return out;
+}
+
+std::vector<Vec3> normalsOf(const Caps& caps) {
+  std::vector<Vec3> normals(caps.points.size(), Vec3::Zero());
+  for (const auto& t : caps.triangles) {
+    const Vec3 n = (caps.points[t[1]] - caps.points[t[0]]).cross(caps.points[t[2]] - caps.points[t[0]]);
+    for (Id p : t) normals[p] += n;
+  }
+  for (Vec3& n : normals) n.normalize();
+  return normals;
+}
+
+// A point near the geometry goes to its far side, measured from the closest triangle; one over a hole moves
+// along the wall's own normal, so that the cap does not fold onto the rim.
+void offset(Caps& caps, const SurfaceModel& model, double distance, double over) {
+  const std::vector<Vec3> normals = normalsOf(caps);
+  tbb::parallel_for(std::size_t(0), caps.points.size(), [&](std::size_t i) {
+    const Closest c = model.closest(caps.points[i]);
+    Vec3 n = normals[i];
+    if (c.distance2 <= over * over) {
+      const Vec3& own = model.normal(c.triangle);
+      caps.points[i] = c.point;
+      n = own.dot(n) < 0 ? Vec3(-own) : own;
+    }
+    caps.points[i] += distance * n;
+  });
+}
+
+}  // namespace
+
+Caps offsetCaps(const SurfaceModel& model, const OctreeDecomposeOptions& octree, const OffsetOptions& options,
+                const InsideTest& inside, const std::vector<const Leak*>& holes, Monitor& monitor) {
+  double used = 0;
+  const PolyMesh mesh = coarsestThatWorks(model, octree, options.coarseSize, inside, monitor, used);
+  monitor.check(0.8, "caps");
+  Caps caps = nearHoles(wallOf(mesh), holes, options.overlap);
+  constexpr int mostSplits = 6;
+  for (int split = 0; split < mostSplits; ++split) {
+    double longest = 0;
+    for (const auto& t : caps.triangles) longest = std::max(longest, longestEdge(caps, t));
+    if (longest <= options.finest) break;
+    quarter(caps.points, caps.triangles);
+    caps = nearHoles(caps, holes, options.overlap);
+  }
+  offset(caps, model, options.offset, options.finest);
+  caps.coarseSize = used;
+  return caps;
+}
+
+}  // namespace pm
