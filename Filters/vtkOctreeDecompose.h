@@ -3,10 +3,11 @@
  * @class vtkOctreeDecompose
  * @brief stage 1: a balanced octree around the geometry, refined where the geometry needs it
  *
- * Input: triangles (vtkPolyData or a composite of them). Output: one voxel for each leaf, with the cell
- * arrays Level, Cut (1 = a triangle touches the leaf) and Key, and field data from which the next stage
- * rebuilds the octree. Source: thesis sections 3.2-3.4. Lengths are in the units of the geometry, angles in
- * degrees.
+ * Input: triangles (vtkPolyData or a composite of them), and optionally on port 1 a surface that is not
+ * meshed but near which cells are small (SurfaceDistances). Output: one voxel for each leaf, with the cell
+ * arrays Level, Cut (1 = a triangle touches the leaf), Key, and RefinedBy and RefinedByPatch (why the leaf is
+ * as small as it is), and field data from which the next stage rebuilds the octree. Source: thesis
+ * sections 3.2-3.4. Lengths are in the units of the geometry, angles in degrees.
  */
 #pragma once
 
@@ -74,6 +75,41 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkOctreeDecompose : public vtkMeshStage {
   int GetNumberOfRefineBoxes() const;
   ///@}
   ///@{
+  /** Cells that touch the sphere are at most this large, length. */
+  void AddRefineSphere(double x, double y, double z, double radius, double size);
+  void ClearRefineSpheres();
+  int GetNumberOfRefineSpheres() const;
+  ///@}
+  ///@{
+  /** Cells that touch the solid cylinder between two points of its axis are at most this large, length. */
+  void AddRefineCylinder(double x0, double y0, double z0, double x1, double y1, double z1, double radius,
+                         double size);
+  void ClearRefineCylinders();
+  int GetNumberOfRefineCylinders() const;
+  ///@}
+  ///@{
+  /** Cells within a distance of the named patch are at most this large, lengths. */
+  void AddPatchDistance(const char* patch, double distance, double size);
+  void ClearPatchDistances();
+  int GetNumberOfPatchDistances() const;
+  ///@}
+  ///@{
+  /** Cells within a distance of the surface on input port 1 are at most this large, lengths. */
+  void AddSurfaceDistance(double distance, double size);
+  void ClearSurfaceDistances();
+  int GetNumberOfSurfaceDistances() const;
+  ///@}
+  ///@{
+  /** Free cells across gaps between facing surfaces; 0 = off. */
+  vtkSetClampMacro(GapCells, int, 0, 100);
+  vtkGetMacro(GapCells, int);
+  ///@}
+  ///@{
+  /** Cells around a circle as curved as the surface; 0 = off. */
+  vtkSetClampMacro(CellsPerCircle, int, 0, 1000);
+  vtkGetMacro(CellsPerCircle, int);
+  ///@}
+  ///@{
   /** Angle between normals within a cell that asks for refinement, degrees (criteria 1, 2). */
   vtkSetClampMacro(NormalAngle, double, 0.0, 180.0);
   vtkGetMacro(NormalAngle, double);
@@ -101,6 +137,65 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkOctreeDecompose : public vtkMeshStage {
   vtkGetMacro(CloseAngle, double);
   ///@}
   ///@{
+  /** Criterion 1: NormalAngle within a cell. */
+  vtkSetMacro(CellNormals, bool);
+  vtkGetMacro(CellNormals, bool);
+  vtkBooleanMacro(CellNormals, bool);
+  ///@}
+  ///@{
+  /** Criterion 2: NormalAngle between adjacent cells. */
+  vtkSetMacro(NeighbourNormals, bool);
+  vtkGetMacro(NeighbourNormals, bool);
+  vtkBooleanMacro(NeighbourNormals, bool);
+  ///@}
+  ///@{
+  /** Criterion 3: facing surfaces within a cell. */
+  vtkSetMacro(CellSeparation, bool);
+  vtkGetMacro(CellSeparation, bool);
+  vtkBooleanMacro(CellSeparation, bool);
+  ///@}
+  ///@{
+  /** Criterion 4: facing surfaces in adjacent cells. */
+  vtkSetMacro(NeighbourSeparation, bool);
+  vtkGetMacro(NeighbourSeparation, bool);
+  vtkBooleanMacro(NeighbourSeparation, bool);
+  ///@}
+  ///@{
+  /** Criterion 5 for sharp edges. */
+  vtkSetMacro(RefineSharp, bool);
+  vtkGetMacro(RefineSharp, bool);
+  vtkBooleanMacro(RefineSharp, bool);
+  ///@}
+  ///@{
+  /** Criterion 5 for edges between patches. */
+  vtkSetMacro(RefineInterfaces, bool);
+  vtkGetMacro(RefineInterfaces, bool);
+  vtkBooleanMacro(RefineInterfaces, bool);
+  ///@}
+  enum OpenEdgeType { NONE = 0, SEAMS = 1, ALL = 2 };
+  ///@{
+  /** Criterion 5 for open edges: none, those close to surface they should be stitched to, or all. */
+  vtkSetClampMacro(RefineOpen, int, NONE, ALL);
+  vtkGetMacro(RefineOpen, int);
+  ///@}
+  ///@{
+  /** Criterion 5 for corners: ends and joints of critical edges. */
+  vtkSetMacro(RefineCorners, bool);
+  vtkGetMacro(RefineCorners, bool);
+  vtkBooleanMacro(RefineCorners, bool);
+  ///@}
+  enum FeatureDepthType { AS_NEEDED = 0, FULL = 1 };
+  ///@{
+  /** How deep cells on critical edges are split: as separating them needs, or to the finest level. */
+  vtkSetClampMacro(FeatureDepth, int, AS_NEEDED, FULL);
+  vtkGetMacro(FeatureDepth, int);
+  ///@}
+  ///@{
+  /** Criterion 7: cells of the finest size around a critical edge. */
+  vtkSetClampMacro(FeatureBuffer, int, 0, 100);
+  vtkGetMacro(FeatureBuffer, int);
+  ///@}
+  ///@{
   /** Cells of the same level beside a cell that touches the geometry. */
   vtkSetClampMacro(BufferCells, int, 0, 100);
   vtkGetMacro(BufferCells, int);
@@ -115,13 +210,21 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkOctreeDecompose : public vtkMeshStage {
   vtkSetClampMacro(MaximumCells, vtkIdType, 1, VTK_INT_MAX);
   vtkGetMacro(MaximumCells, vtkIdType);
   ///@}
+  ///@{
+  /** Budget of memory for the whole mesh, GB; a larger estimate is an error; 0 = none. */
+  vtkSetClampMacro(MaximumMemory, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(MaximumMemory, double);
+  ///@}
 
-  /** The properties as the kernel takes them. */
-  pm::OctreeDecomposeOptions Options() const;
+  /** The properties as the kernel takes them; sizeSurface: what lies on input port 1, if anything. */
+  pm::OctreeDecomposeOptions Options(vtkDataObject* sizeSurface = nullptr) const;
+  /** What the input port of the size surface takes. */
+  static int DescribeSizeSurfacePort(vtkInformation* info);
 
  protected:
   vtkOctreeDecompose();
   ~vtkOctreeDecompose() override;
+  int FillInputPortInformation(int port, vtkInformation* info) override;
   void Run(vtkInformationVector** inputs, vtkUnstructuredGrid* mesh, vtkPolyData* boundary,
            pm::Monitor& monitor) override;
 
@@ -137,14 +240,27 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkOctreeDecompose : public vtkMeshStage {
   bool RefineEdges;
   bool Separate;
   double CloseAngle;
+  bool CellNormals;
+  bool NeighbourNormals;
+  bool CellSeparation;
+  bool NeighbourSeparation;
+  bool RefineSharp;
+  bool RefineInterfaces;
+  int RefineOpen;
+  bool RefineCorners;
+  int FeatureDepth;
+  int FeatureBuffer;
   int BufferCells;
   int CellsBetweenLevels;
+  int GapCells;
+  int CellsPerCircle;
   vtkIdType MaximumCells;
+  double MaximumMemory;
 
  private:
   vtkOctreeDecompose(const vtkOctreeDecompose&) = delete;
   void operator=(const vtkOctreeDecompose&) = delete;
 
   struct Lists;
-  std::unique_ptr<Lists> Repeated;  // patch sizes and boxes
+  std::unique_ptr<Lists> Repeated;  // properties of several rows
 };

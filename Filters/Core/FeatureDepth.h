@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Criteria 5 and 7: cells on and near critical edges and points, and how deep they are split.
+//
+// Full depth splits every such cell to the finest level, as the thesis does. As needed, a cell is split only
+// while it and its neighbours hold features that one cell cannot tell apart: two corners, two curves that do
+// not meet in a corner there, a curve that turns by more than kMostTurn, or one that leaves its chord over
+// the cell by more than kMostSag of the finest cell. What is left are cells with one straight piece of a
+// curve, or one corner and the curves from it.
+#pragma once
+
+#include <vector>
+
+#include "FeatureEdges.h"
+#include "OctreeDecompose.h"
+
+namespace pm {
+
+class FeatureDemand {
+ public:
+  static constexpr double kMostTurn = 30;      ///< degrees, over a cell and its neighbours
+  static constexpr double kMostSag = 1. / 20;  ///< of the finest cell's edge
+
+  /// Finds the model's critical edges; keeps a reference to the options.
+  FeatureDemand(const SurfaceModel& model, const OctreeDecomposeOptions& options, double finest);
+
+  enum class Answer {
+    None,   ///< no feature near
+    Split,  ///< a feature in the cell asks
+    Near,   ///< a feature close to the cell asks
+    Keep    ///< a feature that the cell resolves as it is
+  };
+  struct Demand {
+    Answer answer = Answer::None;
+    int sides = 1;  ///< Keep: smooth pieces of surface that meet at the feature
+  };
+  /// Thread-safe.
+  Demand at(const Box& cell) const;
+
+  const FeatureGraph& graph() const { return graph_; }
+
+ private:
+  bool counts(const FeatureSegment& segment) const { return (segment.kind & kinds_) != 0; }
+  Answer fullDepth(const Box& cell) const;
+  Demand asNeeded(const Box& cell) const;
+  struct Run;
+  std::vector<Run> runsNear(const Box& around, const Box& cell) const;
+  bool turns(const Run& run) const;
+  bool sags(const Box& cell, const Run& run) const;
+
+  const OctreeDecomposeOptions& options_;
+  const double finest_;
+  FeatureGraph graph_;
+  std::uint8_t kinds_ = 0;       // FeatureKind bits that count
+  std::vector<Id> loneCorners_;  // corners at which no counted curve ends
+};
+
+}  // namespace pm
