@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FrontRepair.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <numeric>
 
 namespace pm {
 namespace {
@@ -31,84 +34,128 @@ constexpr int kGrowingRounds = 12;
 
 }  // namespace
 
-FrontRepair::FrontRepair(const Octree& tree, const SurfaceModel& model, std::vector<std::uint8_t>& painted)
-    : tree_(tree), model_(model), painted_(painted), touched_(painted.size(), 0) {}
+FrontRepair::FrontRepair(const Octree& tree, const SurfaceModel& model, std::vector<std::uint8_t>& painted,
+                         std::vector<Id>& regionOf)
+    : tree_(tree),
+      model_(model),
+      painted_(painted),
+      regionOf_(regionOf),
+      touched_(painted.size(), 0),
+      gainChanged_(painted.size(), 0) {}
 
-// Leaves in the eight octants around a node; a domain side mirrors, so that the front meets it at right
-// angles.
+// A domain side mirrors, so that the front meets it at right angles.
+Key FrontRepair::axisKey(std::int32_t x, int axis) const {
+  Coord c{0, 0, 0};
+  c[axis] = std::clamp(x, 0, tree_.brick.extent(axis) - 1);
+  return encode(c);
+}
+
 std::array<Id, 8> FrontRepair::leavesAround(const Coord& node) const {
+  Key keys[3][2];
+  for (int a = 0; a < 3; ++a)
+    for (int k = 0; k < 2; ++k) keys[a][k] = axisKey(node[a] + k - 1, a);
   std::array<Id, 8> leaves;
-  for (int k = 0; k < 8; ++k) {
-    Coord c = node;
-    for (int a = 0; a < 3; ++a) {
-      if (!(k >> a & 1)) --c[a];
-      if (c[a] < 0) c[a] = 0;
-      if (c[a] >= tree_.brick.extent(a)) c[a] = tree_.brick.extent(a) - 1;
-    }
-    leaves[k] = tree_.find(c);
-  }
+  for (int k = 0; k < 8; ++k)
+    leaves[k] = tree_.covering(keys[0][k & 1] | keys[1][k >> 1 & 1] | keys[2][k >> 2]);
   return leaves;
 }
 
-bool FrontRepair::forbidden(const Coord& node) const {
-  const std::array<Id, 8> leaves = leavesAround(node);
+FrontRepair::Surroundings FrontRepair::surroundings(Id leaf) const {
+  const std::int32_t span = tree_.brick.span(tree_.levels[leaf]);
+  Surroundings s;
+  s.steps = span > 1 ? 2 : 1;  // smaller neighbours may have nodes half way along the edges and faces
+  s.corner = tree_.corner(leaf);
+  s.step = span / s.steps;
+  Key keys[3][4];
+  for (int a = 0; a < 3; ++a) {
+    keys[a][0] = axisKey(s.corner[a] - 1, a);
+    for (int i = 1; i <= s.steps + 1; ++i) keys[a][i] = axisKey(s.corner[a] + (i - 1) * s.step, a);
+  }
+  const auto inside = [&](int i) { return i >= 1 && i <= s.steps; };
+  for (int z = 0; z <= s.steps + 1; ++z)
+    for (int y = 0; y <= s.steps + 1; ++y)
+      for (int x = 0; x <= s.steps + 1; ++x)
+        s.leaves[x + 4 * y + 16 * z] =
+            inside(x) && inside(y) && inside(z) ? leaf : tree_.covering(keys[0][x] | keys[1][y] | keys[2][z]);
+  return s;
+}
+
+bool FrontRepair::forbidden(const Coord& node, const std::array<Id, 8>& leaves, Id flipped) const {
   unsigned pattern = 0;
   bool isNode = false;
+  const std::int32_t bits = node[0] | node[1] | node[2];
   for (int k = 0; k < 8; ++k) {
-    if (!painted_[leaves[k]]) continue;
+    if ((painted_[leaves[k]] != 0) == (leaves[k] == flipped)) continue;
     pattern |= 1u << k;
-    const std::int32_t span = tree_.brick.span(tree_.levels[leaves[k]]);
-    isNode = isNode || (node[0] % span == 0 && node[1] % span == 0 && node[2] % span == 0);
+    isNode = isNode || (bits & (tree_.brick.span(tree_.levels[leaves[k]]) - 1)) == 0;
   }
   return isNode && pattern != 255 && !isPermittedPattern(pattern);
 }
 
-std::vector<Coord> FrontRepair::forbiddenNodes() const {
+bool FrontRepair::isFront(Id leaf) const {
+  if (!painted_[leaf]) return false;
+  std::array<Id, 4> n;
+  for (int side = 0; side < 6; ++side)
+    for (int k = tree_.faceNeighbours(leaf, side, n); k-- > 0;)
+      if (!painted_[n[k]]) return true;
+  return false;
+}
+
+std::vector<Key> FrontRepair::cornersOfFront(const std::vector<Id>& leaves) const {
   tbb::enumerable_thread_specific<std::vector<Key>> found;
-  tbb::parallel_for(Id(0), tree_.size(), [&](Id leaf) {
-    if (!painted_[leaf]) return;
-    bool front = false;
-    std::array<Id, 4> n;
-    for (int side = 0; side < 6 && !front; ++side)
-      for (int k = tree_.faceNeighbours(leaf, side, n); k-- > 0;) front = front || !painted_[n[k]];
-    if (!front) return;
-    const std::int32_t span = tree_.brick.span(tree_.levels[leaf]);
-    for (int k = 0; k < 8; ++k) {
-      Coord c = tree_.corner(leaf);
-      for (int a = 0; a < 3; ++a) c[a] += (k >> a & 1) * span;
-      if (forbidden(c)) found.local().push_back(encode(c));
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, leaves.size(), 1024), [&](const auto& range) {
+    std::vector<Key>& mine = found.local();
+    const std::size_t before = mine.size();
+    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      if (!isFront(leaves[i])) continue;
+      const Coord corner = tree_.corner(leaves[i]);
+      const std::int32_t span = tree_.brick.span(tree_.levels[leaves[i]]);
+      for (int k = 0; k < 8; ++k)
+        mine.push_back(encode(
+            {corner[0] + (k & 1) * span, corner[1] + (k >> 1 & 1) * span, corner[2] + (k >> 2) * span}));
     }
+    // Consecutive leaves share most of their corners.
+    std::sort(mine.begin() + before, mine.end());
+    mine.erase(std::unique(mine.begin() + before, mine.end()), mine.end());
   });
   std::vector<Key> keys;
   for (const auto& mine : found) keys.insert(keys.end(), mine.begin(), mine.end());
-  std::sort(keys.begin(), keys.end());
+  tbb::parallel_sort(keys.begin(), keys.end());
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  return keys;
+}
+
+std::vector<Coord> FrontRepair::forbiddenNodes(const std::vector<Id>& leaves) const {
+  const std::vector<Key> keys = cornersOfFront(leaves);
+  std::vector<std::uint8_t> bad(keys.size());
+  tbb::parallel_for(std::size_t(0), keys.size(), [&](std::size_t i) {
+    const Coord node = decode(keys[i]);
+    bad[i] = forbidden(node, leavesAround(node), kNone);
+  });
   std::vector<Coord> nodes;
-  for (Key k : keys) nodes.push_back(decode(k));
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    if (bad[i]) nodes.push_back(decode(keys[i]));
   return nodes;
 }
 
-int FrontRepair::forbiddenOn(Id leaf) const {
-  const std::int32_t span = tree_.brick.span(tree_.levels[leaf]);
-  const Coord c = tree_.corner(leaf);
-  // Smaller neighbours may have nodes half way along the edges and faces.
-  const int steps = span > 1 ? 2 : 1, step = span / steps;
+int FrontRepair::forbiddenOn(const Surroundings& s, Id flipped) const {
   int count = 0;
-  for (int z = 0; z <= steps; ++z)
-    for (int y = 0; y <= steps; ++y)
-      for (int x = 0; x <= steps; ++x) {
-        if (steps == 2 && x == 1 && y == 1 && z == 1) continue;
-        count += forbidden({c[0] + x * step, c[1] + y * step, c[2] + z * step});
+  std::array<Id, 8> leaves;
+  for (int z = 0; z <= s.steps; ++z)
+    for (int y = 0; y <= s.steps; ++y)
+      for (int x = 0; x <= s.steps; ++x) {
+        if (s.steps == 2 && x == 1 && y == 1 && z == 1) continue;
+        for (int k = 0; k < 8; ++k)
+          leaves[k] = s.leaves[x + (k & 1) + 4 * (y + (k >> 1 & 1)) + 16 * (z + (k >> 2))];
+        const Coord node{s.corner[0] + x * s.step, s.corner[1] + y * s.step, s.corner[2] + z * s.step};
+        count += forbidden(node, leaves, flipped);
       }
   return count;
 }
 
-int FrontRepair::gain(Id leaf) {
-  const int before = forbiddenOn(leaf);
-  painted_[leaf] ^= 1;
-  const int after = forbiddenOn(leaf);
-  painted_[leaf] ^= 1;
-  return before - after;
+int FrontRepair::gain(Id leaf) const {
+  const Surroundings s = surroundings(leaf);
+  return forbiddenOn(s, kNone) - forbiddenOn(s, leaf);
 }
 
 bool FrontRepair::inSight(Id from, Id to) const {
@@ -129,28 +176,59 @@ bool FrontRepair::hasPaintedNeighbourInSight(Id leaf) const {
   return false;
 }
 
+Id FrontRepair::regionBeside(Id leaf) const {
+  std::array<Id, 4> n;
+  Id region = kNone;
+  for (int side = 0; side < 6; ++side)
+    for (int k = tree_.faceNeighbours(leaf, side, n); k-- > 0;) {
+      if (!painted_[n[k]]) continue;
+      if (region != kNone && regionOf_[n[k]] != region) return kNone;
+      region = regionOf_[n[k]];
+    }
+  return region;
+}
+
+void FrontRepair::add(Id leaf, Id region) {
+  painted_[leaf] = 1;
+  regionOf_[leaf] = region;
+}
+
+bool FrontRepair::isBetweenPainted(Id leaf) const {
+  std::array<Id, 4> lower, upper;
+  const auto paintedInSight = [&](Id n) { return painted_[n] && inSight(n, leaf); };
+  for (int axis = 0; axis < 3; ++axis) {
+    const int nl = tree_.faceNeighbours(leaf, 2 * axis, lower);
+    const int nu = tree_.faceNeighbours(leaf, 2 * axis + 1, upper);
+    if (std::any_of(lower.begin(), lower.begin() + nl, paintedInSight) &&
+        std::any_of(upper.begin(), upper.begin() + nu, paintedInSight))
+      return true;
+  }
+  return false;
+}
+
 Id FrontRepair::fill() {
   std::vector<Id> candidates;
   for (Id leaf = 0; leaf < tree_.size(); ++leaf)
     if (!painted_[leaf] && tree_.cut[leaf] && !touched_[leaf]) candidates.push_back(leaf);
-  std::vector<std::uint8_t> between(candidates.size(), 0);
+  // Gains are foreseen for all candidates at once; those beside a cell painted meanwhile are taken again.
+  constexpr int kNotBetween = -1000;
+  std::vector<std::int16_t> foreseen(candidates.size());
   tbb::parallel_for(std::size_t(0), candidates.size(), [&](std::size_t i) {
-    std::array<Id, 4> lower, upper;
-    for (int axis = 0; axis < 3 && !between[i]; ++axis) {
-      const int nl = tree_.faceNeighbours(candidates[i], 2 * axis, lower);
-      const int nu = tree_.faceNeighbours(candidates[i], 2 * axis + 1, upper);
-      const auto paintedInSight = [&](Id n) { return painted_[n] && inSight(n, candidates[i]); };
-      between[i] = std::any_of(lower.begin(), lower.begin() + nl, paintedInSight) &&
-                   std::any_of(upper.begin(), upper.begin() + nu, paintedInSight);
-    }
+    foreseen[i] =
+        static_cast<std::int16_t>(isBetweenPainted(candidates[i]) ? gain(candidates[i]) : kNotBetween);
   });
-  Id count = 0;
-  for (std::size_t i = 0; i < candidates.size(); ++i)
-    if (between[i] && gain(candidates[i]) >= 0) {
-      painted_[candidates[i]] = 1;
-      ++count;
-    }
-  return count;
+  std::vector<Id> filled;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const Id leaf = candidates[i];
+    if (foreseen[i] == kNotBetween || (gainChanged_[leaf] ? gain(leaf) : foreseen[i]) < 0) continue;
+    const Id region = regionBeside(leaf);
+    if (region == kNone) continue;
+    add(leaf, region);
+    filled.push_back(leaf);
+    forSurroundings(leaf, [&](Id other) { gainChanged_[other] = 1; });
+  }
+  for (Id leaf : filled) forSurroundings(leaf, [&](Id other) { gainChanged_[other] = 0; });
+  return static_cast<Id>(filled.size());
 }
 
 bool FrontRepair::growAt(const Coord& node) {
@@ -159,14 +237,14 @@ bool FrontRepair::growAt(const Coord& node) {
   for (Id leaf : leavesAround(node)) {
     if (painted_[leaf] || !tree_.cut[leaf] || touched_[leaf] || leaf == best) continue;
     const int g = gain(leaf);
-    if (g > bestGain && hasPaintedNeighbourInSight(leaf)) {
+    if (g > bestGain && regionBeside(leaf) != kNone && hasPaintedNeighbourInSight(leaf)) {
       best = leaf;
       bestGain = g;
     }
   }
   if (best == kNone) return false;
-  painted_[best] = 1;
-  touched_[best] = 1;
+  add(best, regionBeside(best));
+  markChanged(best);
   return true;
 }
 
@@ -184,22 +262,41 @@ bool FrontRepair::removeAt(const Coord& node) {
   }
   if (best == kNone) return false;
   painted_[best] = 0;
-  touched_[best] = 1;
+  markChanged(best);
   return true;
 }
 
+void FrontRepair::markChanged(Id leaf) {
+  touched_[leaf] = 1;
+  changed_.push_back(leaf);
+}
+
+// A changed leaf changes the patterns of the nodes on its surface, and which of its face neighbours are
+// front.
+std::vector<Id> FrontRepair::aroundChanged() const {
+  std::vector<Id> leaves;
+  for (Id leaf : changed_) forSurroundings(leaf, [&](Id other) { leaves.push_back(other); });
+  std::sort(leaves.begin(), leaves.end());
+  leaves.erase(std::unique(leaves.begin(), leaves.end()), leaves.end());
+  return leaves;
+}
+
 void FrontRepair::clean(Monitor& monitor, PaintFrontReport& report) {
+  std::vector<Id> leaves(tree_.size());
+  std::iota(leaves.begin(), leaves.end(), 0);
   for (int round = 0;; ++round) {
     monitor.check(0.5 + 0.3 * round / (round + 5.0), "front repair");
-    const std::vector<Coord> nodes = forbiddenNodes();
+    const std::vector<Coord> nodes = forbiddenNodes(leaves);
     if (nodes.empty()) return;
+    changed_.clear();
     for (const Coord& node : nodes) {
-      if (!forbidden(node)) continue;  // an earlier change mended it
+      if (!forbidden(node, leavesAround(node), kNone)) continue;  // an earlier change mended it
       if (round < kGrowingRounds && growAt(node))
         ++report.grown;
       else if (removeAt(node))
         ++report.removed;
     }
+    leaves = aroundChanged();
   }
 }
 

@@ -7,8 +7,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "SurfaceModel.h"
+#include "TriangleBox.h"
+
 namespace pm {
 namespace {
+
+constexpr Key kAxisBits = 0x1249249249249249ull;  // the bits of the first axis
 
 // Spreads the low 21 bits of x to every third bit.
 Key spread(Key x) {
@@ -17,11 +22,11 @@ Key spread(Key x) {
   x = (x | x << 16) & 0x1f0000ff0000ffull;
   x = (x | x << 8) & 0x100f00f00f00f00full;
   x = (x | x << 4) & 0x10c30c30c30c30c3ull;
-  return (x | x << 2) & 0x1249249249249249ull;
+  return (x | x << 2) & kAxisBits;
 }
 
 std::int32_t gather(Key x) {
-  x &= 0x1249249249249249ull;
+  x &= kAxisBits;
   x = (x ^ (x >> 2)) & 0x10c30c30c30c30c3ull;
   x = (x ^ (x >> 4)) & 0x100f00f00f00f00full;
   x = (x ^ (x >> 8)) & 0x1f0000ff0000ffull;
@@ -65,30 +70,23 @@ bool Brick::inside(const Coord& c) const {
   return true;
 }
 
-void Octree::index() {
-  const Key last = keys.empty() ? 0 : keys.back();
-  int bits = 1;
-  while (bits < 63 && (last >> bits) != 0) ++bits;
-  int want = 1;  // about one bucket a leaf
-  while (want < 26 && (Id(1) << want) < size()) ++want;
-  shift_ = std::max(0, bits - want);
-  bucket_.assign((last >> shift_) + 2, size());
-  for (Id leaf = size(); leaf-- > 0;) bucket_[keys[leaf] >> shift_] = leaf;
-  for (std::size_t b = bucket_.size() - 1; b-- > 0;) bucket_[b] = std::min(bucket_[b], bucket_[b + 1]);
+double touchSlack(const Brick& brick, int level) {
+  Coord end;
+  for (int a = 0; a < 3; ++a) end[a] = brick.extent(a);
+  const double far = brick.origin.cwiseAbs().cwiseMax(brick.position(end).cwiseAbs()).maxCoeff();
+  return std::max(1e-9 * brick.edge(level), 8 * std::numeric_limits<double>::epsilon() * far);
 }
 
-Id Octree::find(const Coord& c) const {
-  if (!brick.inside(c)) return kNone;
-  const Key key = encode(c);
-  const Key block = std::min<Key>(key >> shift_, bucket_.size() - 2);
-  // The covering leaf is the last whose key is not above ours.
-  const auto first = keys.begin() + bucket_[block];
-  const auto last = keys.begin() + bucket_[block + 1];
-  const Id leaf = static_cast<Id>(std::upper_bound(first, last, key) - keys.begin()) - 1;
+void Octree::index() { index_.build(keys); }
+
+Id Octree::covering(Key key) const {
+  const Id leaf = index_.upperBound(keys, key) - 1;
   if (leaf < 0) return kNone;
   const Key covered = Key(1) << (3 * (brick.maxLevel - levels[leaf]));
   return key - keys[leaf] < covered ? leaf : kNone;
 }
+
+Id Octree::find(const Coord& c) const { return brick.inside(c) ? covering(encode(c)) : kNone; }
 
 Id Octree::locate(const Vec3& p) const {
   Coord c;
@@ -101,22 +99,27 @@ Id Octree::locate(const Vec3& p) const {
 }
 
 int Octree::faceNeighbours(Id leaf, int side, std::array<Id, 4>& out) const {
+  // Keys are added and compared axis by axis as they are: the bits of an axis with ones between them carry
+  // like a plain number.
   const int axis = side / 2, level = levels[leaf];
-  const std::int32_t span = brick.span(level);
-  Coord c = corner(leaf);
-  c[axis] += side % 2 ? span : -1;
-  const Id first = find(c);
+  const Key mask = kAxisBits << axis, mine = keys[leaf] & mask, others = keys[leaf] & ~mask;
+  const Key span = Key(1) << (3 * (brick.maxLevel - level) + axis);
+  Key beside;
+  if (side % 2) {
+    beside = ((mine | ~mask) + span) & mask;
+    if (beside >= spread(brick.extent(axis)) << axis) return 0;
+  } else {
+    if (mine == 0) return 0;
+    beside = (mine - (Key(1) << axis)) & mask;
+  }
+  const Id first = covering(others | beside);
   if (first == kNone) return 0;
   out[0] = first;
   if (levels[first] <= level) return 1;
-  const std::int32_t half = span / 2;
-  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-  for (int k = 1; k < 4; ++k) {
-    Coord d = c;
-    d[u] += (k & 1) ? half : 0;
-    d[v] += (k & 2) ? half : 0;
-    out[k] = find(d);
-  }
+  // The half edge's bit is clear in both other axes of a leaf's key.
+  const int up = 3 * (brick.maxLevel - level - 1);
+  const Key u = Key(1) << (up + (axis + 1) % 3), v = Key(1) << (up + (axis + 2) % 3);
+  for (int k = 1; k < 4; ++k) out[k] = covering(others | beside | ((k & 1) ? u : 0) | ((k & 2) ? v : 0));
   return 4;
 }
 
@@ -146,6 +149,27 @@ bool isBalanced(const Octree& tree) {
       // Looking from the smaller leaf to the larger finds every pair.
       if (other != kNone && tree.levels[leaf] - tree.levels[other] > 1) return false;
     }
+    return true;
+  });
+}
+
+bool findsAllTriangles(const Octree& tree, const SurfaceModel& model) {
+  if (tree.triangles.rows() != tree.size()) return false;
+  const auto touchesLeaf = [&](const Box& box, Id t, double slack) {
+    return touches(box, model.corner(t, 0), model.corner(t, 1), model.corner(t, 2), slack);
+  };
+  return allLeaves(tree, [&](Id leaf) {
+    const Span<Id> list = tree.triangles[leaf];
+    if (list.empty() == (tree.cut[leaf] != 0)) return false;
+    for (std::size_t i = 1; i < list.size(); ++i)
+      if (list[i - 1] >= list[i]) return false;
+    const Box box = tree.box(leaf);
+    // Lists come from the parent's slack, and a little more for what the two tests round differently.
+    const double slack = 4 * touchSlack(tree.brick, std::max(0, tree.levels[leaf] - 1));
+    for (Id t : list)
+      if (!touchesLeaf(box, t, slack)) return false;
+    for (Id t : model.trianglesNear(box))
+      if (touchesLeaf(box, t, 0) && !std::binary_search(list.begin(), list.end(), t)) return false;
     return true;
   });
 }

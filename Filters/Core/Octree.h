@@ -8,11 +8,13 @@
 #include <array>
 #include <vector>
 
+#include "KeyIndex.h"
 #include "Types.h"
 
 namespace pm {
 
-using Key = std::uint64_t;
+class SurfaceModel;
+
 using Coord = std::array<std::int32_t, 3>;  ///< position on the finest grid
 
 constexpr int kMaxLevel = 18;
@@ -41,13 +43,19 @@ struct Brick {
   bool inside(const Coord& c) const;
 };
 
+/// How far (length) a triangle may be from a cell of the level that it counts as touching: a billionth of the
+/// cell's edge, or what rounding of coordinates far from the origin takes.
+double touchSlack(const Brick& brick, int level);
+
 class Octree {
  public:
   Brick brick;
   std::vector<Key> keys;             // #L ascending
   std::vector<std::uint8_t> levels;  // #L
   Csr<Id> triangles;  // #L rows: triangles that touch the leaf; empty lists after load from a file
-  std::vector<std::uint8_t> cut;  // #L 1 = a triangle touches the leaf
+  std::vector<std::uint8_t> cut;             // #L 1 = a triangle touches the leaf
+  std::vector<std::uint8_t> refinedBy;       // #L RefineReason that split the leaf's parent; empty after load
+  std::vector<std::int16_t> refinedByPatch;  // #L patch of the triangle that asked, kNone for none; likewise
 
   Id size() const { return static_cast<Id>(keys.size()); }
   Coord corner(Id leaf) const { return decode(keys[leaf]); }
@@ -56,19 +64,24 @@ class Octree {
   void index();
   /// Leaf that covers the finest cell c, kNone outside the brick.
   Id find(const Coord& c) const;
+  /// The same for the finest cell of a key, which must lie in the brick.
+  Id covering(Key key) const;
   /// Leaf that holds a point, kNone outside the brick.
   Id locate(const Vec3& p) const;
   /// Leaves across side s (2*axis + (0 lower, 1 upper)): none, one, or up to four smaller ones.
   int faceNeighbours(Id leaf, int side, std::array<Id, 4>& out) const;
 
  private:
-  std::vector<Id> bucket_;  // first leaf of each block of keys
-  int shift_ = 63;
+  KeyIndex index_;
 };
 
 /// Predicates: leaves tile the brick without hole or overlap; adjacent leaves (face, edge, corner) differ by
 /// <= 1 level.
 bool isComplete(const Octree& tree);
 bool isBalanced(const Octree& tree);
+/// Lists are sound: each holds every triangle that touches its leaf, none that misses it by more than
+/// rounding asks for, in ascending order, and `cut` tells which are not empty. Tests leaves against the
+/// model's own search, not against how the lists were made.
+bool findsAllTriangles(const Octree& tree, const SurfaceModel& model);
 
 }  // namespace pm

@@ -2,35 +2,98 @@
 #include "TriangleBox.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 namespace pm {
 
-bool touches(const Box& box, const Vec3& a, const Vec3& b, const Vec3& c, double slack) {
-  const Vec3 centre = box.centre(), half = 0.5 * box.size() + Vec3::Constant(slack);
-  const Vec3 p[3] = {a - centre, b - centre, c - centre};
-  for (int k = 0; k < 3; ++k) {
-    const double lo = std::min({p[0][k], p[1][k], p[2][k]}), hi = std::max({p[0][k], p[1][k], p[2][k]});
-    if (lo > half[k] || hi < -half[k]) return false;
+namespace {
+
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+// Children in the upper half along each axis.
+constexpr std::uint8_t kUpper[3] = {0xaa, 0xcc, 0xf0};
+
+double least(double a, double b, double c) { return std::min(std::min(a, b), c); }
+double most(double a, double b, double c) { return std::max(std::max(a, b), c); }
+
+/// A triangle relative to a point near a box, with bounds of what rounding does to its separating axes.
+struct NearTriangle {
+  Vec3 p[3], edge[3], normal;
+  double normalError, edgeError;
+
+  NearTriangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& centre)
+      : p{a - centre, b - centre, c - centre}, edge{p[1] - p[0], p[2] - p[1], p[0] - p[2]} {
+    normal = edge[0].cross(edge[1]);
+    const double reach = p[0].cwiseAbs().cwiseMax(p[1].cwiseAbs()).cwiseMax(p[2].cwiseAbs()).maxCoeff();
+    edgeError = 16 * kEps * reach * reach;
+    normalError = 64 * kEps * reach * reach * reach;
   }
-  const Vec3 edge[3] = {p[1] - p[0], p[2] - p[1], p[0] - p[2]};
-  const Vec3 normal = edge[0].cross(edge[1]);
-  if (std::abs(normal.dot(p[0])) > normal.cwiseAbs().dot(half)) return false;
-  for (const Vec3& e : edge) {
+  /// Extent along axis unit(k) x edge[i]; both ends of the edge have the same place on it.
+  std::pair<double, double> extent(int i, int u, int v) const {
+    const Vec3 &e = edge[i], &q = p[i], &r = p[(i + 2) % 3];
+    return std::minmax(-e[v] * q[u] + e[u] * q[v], -e[v] * r[u] + e[u] * r[v]);
+  }
+};
+
+}  // namespace
+
+bool touches(const Box& box, const Vec3& a, const Vec3& b, const Vec3& c, double slack) {
+  for (int k = 0; k < 3; ++k)
+    if (least(a[k], b[k], c[k]) > box.hi[k] + slack || most(a[k], b[k], c[k]) < box.lo[k] - slack)
+      return false;
+  const NearTriangle t(a, b, c, box.centre());
+  const Vec3 half = 0.5 * box.size() + Vec3::Constant(slack);
+  if (std::abs(t.normal.dot(t.p[0])) > t.normal.cwiseAbs().dot(half) + t.normalError) return false;
+  for (int i = 0; i < 3; ++i)
     for (int k = 0; k < 3; ++k) {
-      const int u = (k + 1) % 3, v = (k + 2) % 3;  // axis = unit(k) x e
-      double lo = std::numeric_limits<double>::infinity(), hi = -lo;
-      for (const Vec3& q : p) {
-        const double d = -e[v] * q[u] + e[u] * q[v];
-        lo = std::min(lo, d);
-        hi = std::max(hi, d);
-      }
-      const double radius = std::abs(e[v]) * half[u] + std::abs(e[u]) * half[v];
+      const int u = (k + 1) % 3, v = (k + 2) % 3;
+      const auto [lo, hi] = t.extent(i, u, v);
+      const double radius = std::abs(t.edge[i][v]) * half[u] + std::abs(t.edge[i][u]) * half[v] + t.edgeError;
       if (lo > radius || hi < -radius) return false;
     }
-  }
   return true;
+}
+
+std::uint8_t touchedChildren(const ChildPlanes& cell, const Vec3& a, const Vec3& b, const Vec3& c,
+                             double slack) {
+  std::uint8_t children = 0xff;
+  bool inside = true;
+  int crossed = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double lo = least(a[k], b[k], c[k]), hi = most(a[k], b[k], c[k]);
+    inside = inside && lo >= cell.lo[k] && hi <= cell.hi[k];
+    const bool lower = lo <= cell.middle[k] + slack && hi >= cell.lo[k] - slack;
+    const bool upper = hi >= cell.middle[k] - slack && lo <= cell.hi[k] + slack;
+    crossed += lower && upper;
+    children &= (lower ? ~kUpper[k] & 0xff : 0) | (upper ? kUpper[k] : 0);
+  }
+  if (children == 0 || (inside && crossed <= 1)) return children;
+
+  const NearTriangle t(a, b, c, cell.middle);
+  const Vec3 centre = 0.5 * (cell.middle - cell.lo).cwiseMax(cell.hi - cell.middle);  // of the upper child
+  const Vec3 half = centre + Vec3::Constant(slack);
+  const Vec3 step = t.normal.cwiseProduct(centre);
+  const double place = t.normal.dot(t.p[0]), radius = t.normal.cwiseAbs().dot(half) + t.normalError;
+  for (int m = 0; m < 8; ++m) {
+    const double shift =
+        (m & 1 ? step[0] : -step[0]) + (m & 2 ? step[1] : -step[1]) + (m & 4 ? step[2] : -step[2]);
+    if (std::abs(place - shift) > radius) children &= ~(1u << m);
+  }
+  for (int i = 0; i < 3 && children != 0; ++i)
+    for (int k = 0; k < 3; ++k) {
+      const int u = (k + 1) % 3, v = (k + 2) % 3;
+      const double eu = t.edge[i][u], ev = t.edge[i][v];
+      const auto [lo, hi] = t.extent(i, u, v);
+      const double reach = std::abs(ev) * half[u] + std::abs(eu) * half[v] + t.edgeError;
+      for (int m = 0; m < 4; ++m) {
+        const double shift = (m & 1 ? -ev : ev) * centre[u] + (m & 2 ? eu : -eu) * centre[v];
+        if (lo - shift > reach || hi - shift < -reach)
+          children &= ~((m & 1 ? kUpper[u] : ~kUpper[u]) & (m & 2 ? kUpper[v] : ~kUpper[v]));
+      }
+    }
+  return children;
 }
 
 bool touches(const Box& box, const Vec3& a, const Vec3& b) {
