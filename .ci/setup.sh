@@ -16,7 +16,7 @@ packages=(
   # the kernel
   libopenvdb-dev libtbb-dev libeigen3-dev libfmt-dev
   # tests, benchmarks, pictures
-  libgtest-dev libbenchmark-dev python3-numpy python3-scipy xvfb xauth libgl1-mesa-dri
+  libgtest-dev libbenchmark-dev python3-numpy python3-scipy python3-matplotlib xvfb xauth libgl1-mesa-dri
 )
 
 # say SENTENCE: to the person, on standard error

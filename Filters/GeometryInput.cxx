@@ -2,7 +2,9 @@
 #include "GeometryInput.h"
 
 #include <algorithm>
+#include <cstring>
 #include <map>
+#include <mutex>
 #include <utility>
 
 #include "GridArrays.h"
@@ -11,11 +13,13 @@
 #include "vtkCompositeDataSet.h"
 #include "vtkDataObjectTree.h"
 #include "vtkDataObjectTreeIterator.h"
+#include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
 #include "vtkStringArray.h"
 #include "vtkTriangleFilter.h"
+#include "vtkWeakPointer.h"
 
 namespace pm {
 
@@ -154,12 +158,7 @@ void addTriangles(vtkPolyData* surface, Soup& soup) {
   }
 }
 
-}  // namespace
-
-std::unique_ptr<SurfaceModel> surfaceFrom(vtkDataObject* data, const char* patchArray) {
-  const std::string wanted = patchArray ? patchArray : "";
-  std::vector<Block> blocks;
-  addBlocks(data, "", blocks);
+Soup gather(const std::vector<Block>& blocks, const std::string& wanted) {
   Soup soup;
   for (const Block& block : blocks) {
     const vtkSmartPointer<vtkPolyData> surface = triangulated(block.surface);
@@ -177,7 +176,122 @@ std::unique_ptr<SurfaceModel> surfaceFrom(vtkDataObject* data, const char* patch
     throw InputError(
         "The geometry has no triangles; give it a surface of polygons (lines and points do not count).");
   }
-  return std::make_unique<SurfaceModel>(soup.points, soup.triangles, soup.patch, soup.names);
+  return soup;
+}
+
+/// Two sums over all bytes of a soup: equal for equal content.
+struct Digest {
+  std::uint64_t a = 0x9e3779b97f4a7c15ull, b = 0xc2b2ae3d27d4eb4full;
+
+  bool operator==(const Digest& other) const { return a == other.a && b == other.b; }
+  void add(const void* data, std::size_t count) {
+    add(count);
+    const auto* bytes = static_cast<const unsigned char*>(data);
+    for (; count >= 8; bytes += 8, count -= 8) {
+      std::uint64_t word;
+      std::memcpy(&word, bytes, 8);
+      add(word);
+    }
+    std::uint64_t rest = 0;
+    std::memcpy(&rest, bytes, count);
+    add(rest);
+  }
+
+ private:
+  void add(std::uint64_t word) {
+    a = (a ^ word) * 0xff51afd7ed558ccdull;
+    a ^= a >> 29;
+    b = (b + word) * 0xc4ceb9fe1a85ec53ull;
+    b ^= b >> 31;
+  }
+};
+
+Digest digestOf(const Soup& soup) {
+  Digest d;
+  const auto addAll = [&](const auto& values) { d.add(values.data(), values.size() * sizeof values[0]); };
+  addAll(soup.points);
+  addAll(soup.triangles);
+  addAll(soup.patch);
+  for (const std::string& name : soup.names) d.add(name.data(), name.size());
+  return d;
+}
+
+/// Where a model came from: data objects as they were at a time, and how patches were told apart.
+struct Origin {
+  struct Part {
+    vtkWeakPointer<vtkPolyData> surface;  // null when it is gone, so that a new one at its address is another
+    vtkMTimeType modified;
+    std::string name;
+    bool operator==(const Part& p) const {
+      return surface && surface == p.surface && modified == p.modified && name == p.name;
+    }
+  };
+  std::vector<Part> parts;
+  std::string patchArray;
+
+  Origin(const std::vector<Block>& blocks, const std::string& wanted) : patchArray(wanted) {
+    for (const Block& block : blocks) {
+      vtkPolyData* s = block.surface;
+      vtkMTimeType modified = std::max(s->GetMTime(), s->GetFieldData()->GetMTime());
+      modified = std::max(modified, s->GetPolys()->GetConnectivityArray()->GetMTime());
+      parts.push_back({s, modified, block.name});
+    }
+  }
+  bool operator==(const Origin& o) const { return parts == o.parts && patchArray == o.patchArray; }
+};
+
+/// The models that some filter holds: found again by their origin, which costs nothing, or by their content.
+class Models {
+ public:
+  using Model = std::shared_ptr<const SurfaceModel>;
+
+  Model find(const Origin& origin) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    for (const Entry& entry : entries_)
+      if (entry.origin == origin)
+        if (Model model = entry.model.lock()) return model;
+    return nullptr;
+  }
+  Model find(const Digest& digest) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    for (const Entry& entry : entries_)
+      if (entry.digest == digest)
+        if (Model model = entry.model.lock()) return model;
+    return nullptr;
+  }
+  void add(const Origin& origin, const Digest& digest, const Model& model) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    entries_.erase(
+        std::remove_if(entries_.begin(), entries_.end(), [](const Entry& e) { return e.model.expired(); }),
+        entries_.end());
+    entries_.push_back({origin, digest, model});
+  }
+
+ private:
+  struct Entry {
+    Origin origin;
+    Digest digest;
+    std::weak_ptr<const SurfaceModel> model;
+  };
+  std::mutex mutex_;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace
+
+std::shared_ptr<const SurfaceModel> surfaceFrom(vtkDataObject* data, const char* patchArray) {
+  static Models models;
+  const std::string wanted = patchArray ? patchArray : "";
+  std::vector<Block> blocks;
+  addBlocks(data, "", blocks);
+  const Origin origin(blocks, wanted);
+  if (Models::Model known = models.find(origin)) return known;
+  const Soup soup = gather(blocks, wanted);
+  const Digest digest = digestOf(soup);
+  Models::Model model = models.find(digest);
+  if (!model) model = std::make_shared<SurfaceModel>(soup.points, soup.triangles, soup.patch, soup.names);
+  models.add(origin, digest, model);
+  return model;
 }
 
 }  // namespace pm

@@ -22,7 +22,10 @@ namespace pm {
 /// PatchNames, GroupNames, MaterialNames; an id without a name becomes "patch<id>". Blocks or ids of equal
 /// name are one patch; patches without triangles are left out.
 ///
+/// As long as someone holds a model, the same unchanged data, or other data of equal content, gives that
+/// model again instead of a new one. Thread-safe.
+///
 /// Throws InputError when there is nothing to mesh.
-std::unique_ptr<SurfaceModel> surfaceFrom(vtkDataObject* data, const char* patchArray);
+std::shared_ptr<const SurfaceModel> surfaceFrom(vtkDataObject* data, const char* patchArray);
 
 }  // namespace pm

@@ -25,7 +25,6 @@
 
 #include "CellRecognition.h"
 #include "GridArrays.h"
-#include "PaintFront.h"
 
 namespace pm {
 
@@ -148,12 +147,14 @@ void packMesh(const PolyMesh& mesh, vtkUnstructuredGrid* grid) {
 
   addArray<vtkUnsignedCharArray>(grid->GetCellData(), "Level", mesh.level);
   addArray<vtkUnsignedCharArray>(grid->GetCellData(), "Layer", mesh.layer);
+  addArray<vtkTypeInt32Array>(grid->GetCellData(), "Zone", mesh.zone);
   addArray<vtkUnsignedCharArray>(grid->GetPointData(), "Fixed", mesh.fixed);
   addArray<vtkTypeInt32Array>(grid->GetPointData(), "Base", mesh.base);
   vtkFieldData* field = grid->GetFieldData();
   addArray<vtkTypeInt32Array>(field, "BoundaryPatch", mesh.patch);
   addStrings(field, "PatchNames", mesh.patchNames);
   addStrings(field, "PatchTypes", mesh.patchTypes);
+  if (!mesh.zoneNames.empty()) addStrings(field, "ZoneNames", mesh.zoneNames);
   addArray<vtkDoubleArray>(field, "FinestSize", std::vector<double>{mesh.finestSize});
   addStamp(grid, mesh.stage, mesh.boundaryFaces(), checksum(mesh));
 }
@@ -184,20 +185,6 @@ void packBoundary(const PolyMesh& mesh, vtkPolyData* surface) {
   addArray<vtkTypeInt32Array>(surface->GetCellData(), "PatchId", mesh.patch);
   addStrings(surface->GetFieldData(), "PatchNames", mesh.patchNames);
   addStrings(surface->GetFieldData(), "PatchTypes", mesh.patchTypes);
-}
-
-void packRegions(const PaintFrontReport& report, vtkUnstructuredGrid* grid) {
-  std::vector<Id> cells;
-  std::vector<double> volume;
-  std::vector<std::uint8_t> open;
-  for (const PaintedRegion& region : report.regions) {
-    cells.push_back(region.cells);
-    volume.push_back(region.volume);
-    open.push_back(region.open ? 1 : 0);
-  }
-  addArray<vtkTypeInt32Array>(grid->GetFieldData(), "RegionCells", cells);
-  addArray<vtkDoubleArray>(grid->GetFieldData(), "RegionVolume", volume);
-  addArray<vtkUnsignedCharArray>(grid->GetFieldData(), "RegionOpen", open);
 }
 
 }  // namespace pm

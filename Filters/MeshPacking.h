@@ -7,11 +7,13 @@
 //
 //   cell   Level          uint8  #C      octree level
 //   cell   Layer          uint8  #C      0 = not a layer cell, 1 = at the wall, 2 = next to it, ...
+//   cell   Zone           int32  #C      zone of the cell; absent when the mesh is one zone
 //   point  Fixed          uint8  #P      bit a set: coordinate a may not move
 //   point  Base           int32  #P      lower end of a wall point's prism edge, -1 = none
 //   field  BoundaryPatch  int32  #B      patch of each boundary face
 //   field  PatchNames     string         name of each patch
 //   field  PatchTypes     string         "wall" or "patch", beside PatchNames
+//   field  ZoneNames      string         name of each zone; absent when the mesh is one zone
 //   field  FinestSize     double 1       edge of the smallest octree cell
 //   field  ProjectionMesherStamp int64 6 format, stage, #P, #C, #B, pm::checksum
 //
@@ -29,16 +31,11 @@ class vtkUnstructuredGrid;
 
 namespace pm {
 
-struct PaintFrontReport;
-
 /// The volume grid. The mesh must be canonical.
 void packMesh(const PolyMesh& mesh, vtkUnstructuredGrid* grid);
 
 /// The boundary faces with the points they use; cell array PatchId, field arrays PatchNames and PatchTypes.
 void packBoundary(const PolyMesh& mesh, vtkPolyData* surface);
-
-/// The regions that painting found, as field arrays RegionCells, RegionVolume, RegionOpen of the grid.
-void packRegions(const PaintFrontReport& report, vtkUnstructuredGrid* grid);
 
 /// The mesh back from its grid. filter: the asking filter's name, for messages. Throws InputError when the
 /// grid is of another stage than those accepted (empty = any mesh), was not made by packMesh, or was changed

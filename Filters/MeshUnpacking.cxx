@@ -241,6 +241,8 @@ void readArrays(vtkUnstructuredGrid* grid, PolyMesh& mesh, const std::string& fi
   vtkFieldData* field = grid->GetFieldData();
   mesh.level = readArray<std::uint8_t>(grid->GetCellData(), "Level");
   mesh.layer = readArray<std::uint8_t>(grid->GetCellData(), "Layer");
+  mesh.zoneNames = readStrings(field, "ZoneNames");
+  if (!mesh.zoneNames.empty()) mesh.zone = readArray<Id>(grid->GetCellData(), "Zone", mesh.cellCount, filter);
   mesh.fixed = readArray<std::uint8_t>(grid->GetPointData(), "Fixed");
   mesh.base = readArray<Id>(grid->GetPointData(), "Base");
   mesh.patch = readArray<Id>(field, "BoundaryPatch", mesh.boundaryFaces(), filter);

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "GridArrays.h"
+#include "RefineReason.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkCellType.h"
@@ -16,6 +17,7 @@
 #include "vtkNew.h"
 #include "vtkPoints.h"
 #include "vtkSmartPointer.h"
+#include "vtkTypeInt16Array.h"
 #include "vtkTypeInt32Array.h"
 #include "vtkTypeInt64Array.h"
 #include "vtkUnsignedCharArray.h"
@@ -122,6 +124,13 @@ std::uint64_t octreeChecksum(const Octree& tree) {
   return h;
 }
 
+void packReasons(const Octree& tree, vtkUnstructuredGrid* grid) {
+  if (tree.refinedBy.empty()) return;
+  addArray<vtkUnsignedCharArray>(grid->GetCellData(), "RefinedBy", tree.refinedBy);
+  addArray<vtkTypeInt16Array>(grid->GetCellData(), "RefinedByPatch", tree.refinedByPatch);
+  addStrings(grid->GetFieldData(), "RefinedByNames", {kRefineReasonNames.begin(), kRefineReasonNames.end()});
+}
+
 std::vector<double> toVector(const Vec3& v) { return {v[0], v[1], v[2]}; }
 
 }  // namespace
@@ -133,6 +142,7 @@ void packOctree(const Octree& tree, vtkUnstructuredGrid* grid) {
   addArray<vtkUnsignedCharArray>(grid->GetCellData(), "Cut", tree.cut);
   addArray<vtkTypeInt64Array>(grid->GetCellData(), "Key", tree.keys);
   vtkFieldData* field = grid->GetFieldData();
+  packReasons(tree, grid);
   const Brick& brick = tree.brick;
   addArray<vtkDoubleArray>(field, "BrickOrigin", toVector(brick.origin));
   addArray<vtkDoubleArray>(field, "BrickRootSize", toVector(brick.rootSize));

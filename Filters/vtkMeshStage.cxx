@@ -6,6 +6,7 @@
 #include <memory>
 #include <new>
 
+#include "GeometryInput.h"
 #include "StageMonitor.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -46,8 +47,8 @@ int vtkMeshStage::RequestData(vtkInformation*, vtkInformationVector** inputs, vt
     this->UpdateProgress(1.0);
     return 1;
   }
-  mesh->Initialize();
-  if (boundary) boundary->Initialize();
+  for (int port = 0; port < this->GetNumberOfOutputPorts(); ++port)
+    vtkDataObject::GetData(outputs, port)->Initialize();
   return 0;
 }
 
@@ -67,6 +68,11 @@ bool vtkMeshStage::RunSafely(vtkInformationVector** inputs, vtkUnstructuredGrid*
     vtkErrorMacro(<< "This is a fault of the program, please report it: " << error.what());
   }
   return false;
+}
+
+std::shared_ptr<const pm::SurfaceModel> vtkMeshStage::Surface(vtkInformationVector** inputs) {
+  this->Held = pm::surfaceFrom(vtkDataObject::GetData(inputs[this->GeometryPort]), this->PatchArray);
+  return this->Held;
 }
 
 void vtkMeshStage::PrintSelf(ostream& os, vtkIndent indent) {

@@ -5,11 +5,14 @@
  *
  * A stage takes the mesh of the stage before (port "Input") and, where it needs it, the triangle geometry
  * (port "Geometry": vtkPolyData or a composite of them), and makes a volume grid (output port 0) and, from
- * PaintFront on, its boundary faces (output port 1). A subclass implements Run(); this class reports
- * progress, forwards an abort and turns each error of the kernel into one vtkErrorMacro, empty outputs and a
- * failed request.
+ * PaintFront on, its boundary faces (output port 1). A stage that has more to show has further ports,
+ * polydata unless its FillOutputPortInformation() says otherwise, and fills them with GetOutputDataObject().
+ * A subclass implements Run(); this class reports progress, forwards an abort and turns each error of the
+ * kernel into one vtkErrorMacro, empty outputs and a failed request.
  */
 #pragma once
+
+#include <memory>
 
 #include "ProjectionMesherFiltersModule.h"  // for export macro
 #include "vtkUnstructuredGridAlgorithm.h"
@@ -54,6 +57,10 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkMeshStage : public vtkUnstructuredGridAl
   virtual void Run(vtkInformationVector** inputs, vtkUnstructuredGrid* mesh, vtkPolyData* boundary,
                    pm::Monitor& monitor) = 0;
 
+  /// The triangles on the geometry port, shared with all filters that read the same geometry. This filter
+  /// holds them until its next run, so that a change of an option need not prepare them again.
+  std::shared_ptr<const pm::SurfaceModel> Surface(vtkInformationVector** inputs);
+
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
@@ -69,4 +76,5 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkMeshStage : public vtkUnstructuredGridAl
   bool RunSafely(vtkInformationVector** inputs, vtkUnstructuredGrid* mesh, vtkPolyData* boundary);
 
   const int GeometryPort;
+  std::shared_ptr<const pm::SurfaceModel> Held;
 };

@@ -1,26 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkPaintFront.h"
 
-#include "GeometryInput.h"
 #include "MeshPacking.h"
 #include "OctreePacking.h"
 #include "PaintFront.h"
+#include "RegionPacking.h"
+#include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
+#include "vtkTable.h"
 #include "vtkUnstructuredGrid.h"
 
 struct vtkPaintFront::Lists {
   std::vector<pm::Vec3> points;
+  std::vector<pm::Id> ids;
+  std::vector<std::string> patches;
 };
 
 vtkStandardNewMacro(vtkPaintFront);
 
-vtkPaintFront::vtkPaintFront() : vtkMeshStage(2, 1, 2), Repeated(std::make_unique<Lists>()) {
+vtkPaintFront::vtkPaintFront() : vtkMeshStage(2, 1, 4), Repeated(std::make_unique<Lists>()) {
   const pm::PaintFrontOptions defaults;
   this->Region = static_cast<int>(defaults.region);
   this->AllowOpen = defaults.allowOpen;
   this->Fill = defaults.fill;
+  this->ReportInvisible = defaults.reportInvisible;
 }
 
 vtkPaintFront::~vtkPaintFront() = default;
@@ -38,30 +43,74 @@ void vtkPaintFront::ClearSeedPoints() {
 
 int vtkPaintFront::GetNumberOfSeedPoints() const { return static_cast<int>(this->Repeated->points.size()); }
 
+void vtkPaintFront::AddRegionId(int id) {
+  this->Repeated->ids.push_back(id);
+  this->Modified();
+}
+
+void vtkPaintFront::ClearRegionIds() {
+  if (this->Repeated->ids.empty()) return;
+  this->Repeated->ids.clear();
+  this->Modified();
+}
+
+int vtkPaintFront::GetNumberOfRegionIds() const { return static_cast<int>(this->Repeated->ids.size()); }
+
+void vtkPaintFront::AddRegionPatch(const char* name) {
+  if (!name || !*name) return;
+  this->Repeated->patches.emplace_back(name);
+  this->Modified();
+}
+
+void vtkPaintFront::ClearRegionPatches() {
+  if (this->Repeated->patches.empty()) return;
+  this->Repeated->patches.clear();
+  this->Modified();
+}
+
+int vtkPaintFront::GetNumberOfRegionPatches() const {
+  return static_cast<int>(this->Repeated->patches.size());
+}
+
+int vtkPaintFront::FillOutputPortInformation(int port, vtkInformation* info) {
+  if (port != REGIONS) return this->Superclass::FillOutputPortInformation(port, info);
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkTable");
+  return 1;
+}
+
 pm::PaintFrontOptions vtkPaintFront::Options() const {
   pm::PaintFrontOptions options;
   options.region = static_cast<pm::Region>(this->Region);
   options.points = this->Repeated->points;
+  options.ids = this->Repeated->ids;
+  options.patches = this->Repeated->patches;
   options.allowOpen = this->AllowOpen;
   options.fill = this->Fill;
+  options.reportInvisible = this->ReportInvisible;
   return options;
 }
 
 void vtkPaintFront::Run(vtkInformationVector** inputs, vtkUnstructuredGrid* mesh, vtkPolyData* boundary,
                         pm::Monitor& monitor) {
-  const pm::Octree tree = pm::unpackOctree(vtkUnstructuredGrid::GetData(inputs[0]), "Paint Front");
-  const auto model = pm::surfaceFrom(vtkDataObject::GetData(inputs[1]), this->PatchArray);
+  pm::Octree tree = pm::unpackOctree(vtkUnstructuredGrid::GetData(inputs[0]), "Paint Front");
+  const auto model = this->Surface(inputs);
+  pm::listTriangles(tree, *model);
   pm::PaintFrontReport report;
   const pm::PolyMesh front = pm::paintFront(tree, *model, this->Options(), monitor, &report);
   pm::packMesh(front, mesh);
   pm::packBoundary(front, boundary);
   pm::packRegions(report, mesh);
+  pm::packRegionTable(report, front, vtkTable::SafeDownCast(this->GetOutputDataObject(REGIONS)));
+  pm::packInvisible(report, front, vtkPolyData::SafeDownCast(this->GetOutputDataObject(INVISIBLE)));
 }
 
 void vtkPaintFront::PrintSelf(ostream& os, vtkIndent indent) {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Region: " << this->Region << "\n";
   os << indent << "SeedPoints: " << this->GetNumberOfSeedPoints() << "\n";
+  os << indent << "RegionIds: " << this->GetNumberOfRegionIds() << "\n";
+  os << indent << "RegionPatches: " << this->GetNumberOfRegionPatches() << "\n";
   os << indent << "AllowOpen: " << this->AllowOpen << "\n";
   os << indent << "Fill: " << this->Fill << "\n";
+  os << indent << "ReportInvisible: " << this->ReportInvisible << "\n";
 }

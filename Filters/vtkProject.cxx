@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkProject.h"
 
-#include "GeometryInput.h"
 #include "MeshPacking.h"
 #include "Project.h"
 #include "vtkInformationVector.h"
@@ -29,7 +28,7 @@ void vtkProject::Run(vtkInformationVector** inputs, vtkUnstructuredGrid* mesh, v
                      pm::Monitor& monitor) {
   pm::PolyMesh result =
       pm::unpackMesh(vtkUnstructuredGrid::GetData(inputs[0]), "Project", {pm::Stage::Layer});
-  const auto model = pm::surfaceFrom(vtkDataObject::GetData(inputs[1]), this->PatchArray);
+  const auto model = this->Surface(inputs);
   pm::DistanceField field(*model, result.finestSize);
   pm::project(result, field, this->Options(), monitor);
   pm::packMesh(result, mesh);

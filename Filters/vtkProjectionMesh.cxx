@@ -3,12 +3,14 @@
 
 #include <algorithm>
 
-#include "GeometryInput.h"
 #include "MeshPacking.h"
 #include "Pipeline.h"
+#include "RegionPacking.h"
+#include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
+#include "vtkTable.h"
 #include "vtkUnstructuredGrid.h"
 
 struct vtkProjectionMesh::LastRun {
@@ -19,8 +21,11 @@ struct vtkProjectionMesh::LastRun {
 
 vtkStandardNewMacro(vtkProjectionMesh);
 
-vtkProjectionMesh::vtkProjectionMesh() : vtkValidMeshStage(1, 0), Report(std::make_unique<LastRun>()) {
-  this->StopAfter = static_cast<int>(pm::PipelineOptions().stopAfter);
+vtkProjectionMesh::vtkProjectionMesh() : vtkValidMeshStage(2, 0), Report(std::make_unique<LastRun>()) {
+  const pm::PipelineOptions defaults;
+  this->CloseHoles = static_cast<int>(defaults.closeHoles);
+  this->StopAfter = static_cast<int>(defaults.stopAfter);
+  this->SetNumberOfOutputPorts(vtkPaintFront::INVISIBLE + 1);  // those of Paint Front
 }
 
 vtkProjectionMesh::~vtkProjectionMesh() = default;
@@ -37,7 +42,7 @@ void vtkProjectionMesh::Run(vtkInformationVector** inputs, vtkUnstructuredGrid* 
                             pm::Monitor& monitor) {
   *this->Report = LastRun();
   pm::PipelineOptions options;
-  options.octree = this->Octree->Options();
+  options.octree = this->Octree->Options(vtkDataObject::GetData(inputs[1]));
   options.front = this->Front->Options();
   options.layer = this->Layer->Options();
   options.project = this->Projection->Options();
@@ -45,9 +50,10 @@ void vtkProjectionMesh::Run(vtkInformationVector** inputs, vtkUnstructuredGrid* 
   options.refine = this->Refine->Options();
   options.layer.limits = options.project.limits = options.features.limits = options.refine.limits =
       this->Limits();
+  options.closeHoles = static_cast<pm::HoleMethod>(this->CloseHoles);
   options.stopAfter = static_cast<pm::Stage>(this->StopAfter);
 
-  const auto model = pm::surfaceFrom(vtkDataObject::GetData(inputs[0]), this->PatchArray);
+  const auto model = this->Surface(inputs);
   const pm::PolyMesh result = pm::runPipeline(*model, options, monitor, &this->Report->stages);
   this->Report->patchNames = result.patchNames;
   this->Report->patchFaces.assign(result.patchNames.size(), 0);
@@ -55,6 +61,22 @@ void vtkProjectionMesh::Run(vtkInformationVector** inputs, vtkUnstructuredGrid* 
   pm::packMesh(result, mesh);
   pm::packRegions(this->Report->stages.front, mesh);
   pm::packBoundary(result, boundary);
+  const pm::PaintFrontReport& front = this->Report->stages.front;
+  pm::packRegionTable(front, result,
+                      vtkTable::SafeDownCast(this->GetOutputDataObject(vtkPaintFront::REGIONS)));
+  pm::packInvisible(front, result,
+                    vtkPolyData::SafeDownCast(this->GetOutputDataObject(vtkPaintFront::INVISIBLE)));
+}
+
+int vtkProjectionMesh::FillOutputPortInformation(int port, vtkInformation* info) {
+  if (port != vtkPaintFront::REGIONS) return this->Superclass::FillOutputPortInformation(port, info);
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkTable");
+  return 1;
+}
+
+int vtkProjectionMesh::FillInputPortInformation(int port, vtkInformation* info) {
+  if (port == 1) return vtkOctreeDecompose::DescribeSizeSurfacePort(info);
+  return this->Superclass::FillInputPortInformation(port, info);
 }
 
 int vtkProjectionMesh::GetNumberOfPatches() const {
@@ -86,6 +108,7 @@ vtkIdType vtkProjectionMesh::GetFacesWithLayers(int layers) const {
 
 void vtkProjectionMesh::PrintSelf(ostream& os, vtkIndent indent) {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "CloseHoles: " << this->CloseHoles << "\n";
   os << indent << "StopAfter: " << this->StopAfter << "\n";
   for (vtkObject* stage : std::initializer_list<vtkObject*>{this->Octree, this->Front, this->Layer,
                                                             this->Projection, this->Features, this->Refine}) {

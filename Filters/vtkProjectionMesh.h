@@ -59,6 +59,38 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkProjectionMesh : public vtkValidMeshStag
   pmStageProperty(Octree, BufferCells, int);
   pmStageProperty(Octree, CellsBetweenLevels, int);
   pmStageProperty(Octree, MaximumCells, vtkIdType);
+  pmStageProperty(Octree, CellNormals, bool);
+  pmStageProperty(Octree, NeighbourNormals, bool);
+  pmStageProperty(Octree, CellSeparation, bool);
+  pmStageProperty(Octree, NeighbourSeparation, bool);
+  pmStageProperty(Octree, RefineSharp, bool);
+  pmStageProperty(Octree, RefineInterfaces, bool);
+  pmStageProperty(Octree, RefineOpen, int);
+  pmStageProperty(Octree, RefineCorners, bool);
+  pmStageProperty(Octree, FeatureDepth, int);
+  pmStageProperty(Octree, FeatureBuffer, int);
+  pmStageProperty(Octree, GapCells, int);
+  pmStageProperty(Octree, CellsPerCircle, int);
+  pmStageProperty(Octree, MaximumMemory, double);
+  void AddRefineSphere(double x, double y, double z, double radius, double size) {
+    this->Octree->AddRefineSphere(x, y, z, radius, size);
+  }
+  void ClearRefineSpheres() { this->Octree->ClearRefineSpheres(); }
+  int GetNumberOfRefineSpheres() const { return this->Octree->GetNumberOfRefineSpheres(); }
+  void AddRefineCylinder(double x0, double y0, double z0, double x1, double y1, double z1, double radius,
+                         double size) {
+    this->Octree->AddRefineCylinder(x0, y0, z0, x1, y1, z1, radius, size);
+  }
+  void ClearRefineCylinders() { this->Octree->ClearRefineCylinders(); }
+  int GetNumberOfRefineCylinders() const { return this->Octree->GetNumberOfRefineCylinders(); }
+  void AddPatchDistance(const char* patch, double distance, double size) {
+    this->Octree->AddPatchDistance(patch, distance, size);
+  }
+  void ClearPatchDistances() { this->Octree->ClearPatchDistances(); }
+  int GetNumberOfPatchDistances() const { return this->Octree->GetNumberOfPatchDistances(); }
+  void AddSurfaceDistance(double distance, double size) { this->Octree->AddSurfaceDistance(distance, size); }
+  void ClearSurfaceDistances() { this->Octree->ClearSurfaceDistances(); }
+  int GetNumberOfSurfaceDistances() const { return this->Octree->GetNumberOfSurfaceDistances(); }
   ///@}
 
   ///@{
@@ -76,8 +108,15 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkProjectionMesh : public vtkValidMeshStag
   void AddSeedPoint(double x, double y, double z) { this->Front->AddSeedPoint(x, y, z); }
   void ClearSeedPoints() { this->Front->ClearSeedPoints(); }
   int GetNumberOfSeedPoints() const { return this->Front->GetNumberOfSeedPoints(); }
+  void AddRegionId(int id) { this->Front->AddRegionId(id); }
+  void ClearRegionIds() { this->Front->ClearRegionIds(); }
+  int GetNumberOfRegionIds() const { return this->Front->GetNumberOfRegionIds(); }
+  void AddRegionPatch(const char* name) { this->Front->AddRegionPatch(name); }
+  void ClearRegionPatches() { this->Front->ClearRegionPatches(); }
+  int GetNumberOfRegionPatches() const { return this->Front->GetNumberOfRegionPatches(); }
   pmStageProperty(Front, AllowOpen, bool);
   pmStageProperty(Front, Fill, bool);
+  pmStageProperty(Front, ReportInvisible, bool);
   ///@}
 
   ///@{
@@ -97,6 +136,7 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkProjectionMesh : public vtkValidMeshStag
   pmStageProperty(Features, CornerAngle, double);
   pmStageProperty(Features, Interfaces, bool);
   pmStageProperty(Features, OpenEdges, bool);
+  pmStageProperty(Features, Intersections, bool);
   pmStageProperty(Features, GapTolerance, double);
   pmStageProperty(Features, ShortestCurve, double);
   virtual void SetFeatureRounds(int rounds) { this->Features->SetRounds(rounds); }
@@ -108,6 +148,13 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkProjectionMesh : public vtkValidMeshStag
   pmStageProperty(Refine, Layers, int);
   pmStageProperty(Refine, ExpansionRatio, double);
   pmStageProperty(Refine, FirstHeight, double);
+  ///@}
+
+  enum CloseHolesType { NOT = 0, COARSE_TO_FINE = 1, OFFSET = 2 };
+  ///@{
+  /** How holes are closed before stage 1, see vtkCloseHoles. */
+  vtkSetClampMacro(CloseHoles, int, NOT, OFFSET);
+  vtkGetMacro(CloseHoles, int);
   ///@}
 
   enum StageType { FRONT = 2, LAYER = 3, PROJECTED = 4, RESOLVED = 5, REFINED = 6 };
@@ -133,9 +180,12 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkProjectionMesh : public vtkValidMeshStag
  protected:
   vtkProjectionMesh();
   ~vtkProjectionMesh() override;
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
   void Run(vtkInformationVector** inputs, vtkUnstructuredGrid* mesh, vtkPolyData* boundary,
            pm::Monitor& monitor) override;
 
+  int CloseHoles;
   int StopAfter;
   vtkNew<vtkOctreeDecompose> Octree;
   vtkNew<vtkPaintFront> Front;

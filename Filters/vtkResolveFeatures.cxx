@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkResolveFeatures.h"
 
-#include "GeometryInput.h"
 #include "MeshPacking.h"
 #include "ResolveFeatures.h"
 #include "vtkInformationVector.h"
@@ -17,6 +16,7 @@ vtkResolveFeatures::vtkResolveFeatures() : vtkValidMeshStage(2, 1) {
   this->CornerAngle = defaults.features.cornerAngle;
   this->Interfaces = defaults.features.interfaces;
   this->OpenEdges = defaults.features.openEdges;
+  this->Intersections = defaults.features.intersections;
   this->GapTolerance = defaults.features.gapTolerance;
   this->ShortestCurve = defaults.features.shortestCurve;
   this->Rounds = defaults.rounds;
@@ -28,6 +28,7 @@ pm::ResolveFeaturesOptions vtkResolveFeatures::Options() const {
   options.features.cornerAngle = this->CornerAngle;
   options.features.interfaces = this->Interfaces;
   options.features.openEdges = this->OpenEdges;
+  options.features.intersections = this->Intersections;
   options.features.gapTolerance = this->GapTolerance;
   options.features.shortestCurve = this->ShortestCurve;
   options.rounds = this->Rounds;
@@ -41,7 +42,7 @@ void vtkResolveFeatures::Run(vtkInformationVector** inputs, vtkUnstructuredGrid*
   this->Corners = this->ResolvedCorners = 0;
   pm::PolyMesh result =
       pm::unpackMesh(vtkUnstructuredGrid::GetData(inputs[0]), "Resolve Features", {pm::Stage::Projected});
-  const auto model = pm::surfaceFrom(vtkDataObject::GetData(inputs[1]), this->PatchArray);
+  const auto model = this->Surface(inputs);
   pm::DistanceField field(*model, result.finestSize);
   pm::ResolveFeaturesReport report;
   pm::resolveFeatures(result, field, this->Options(), monitor, &report);
@@ -59,6 +60,7 @@ void vtkResolveFeatures::PrintSelf(ostream& os, vtkIndent indent) {
   os << indent << "CornerAngle: " << this->CornerAngle << "\n";
   os << indent << "Interfaces: " << this->Interfaces << "\n";
   os << indent << "OpenEdges: " << this->OpenEdges << "\n";
+  os << indent << "Intersections: " << this->Intersections << "\n";
   os << indent << "GapTolerance: " << this->GapTolerance << "\n";
   os << indent << "ShortestCurve: " << this->ShortestCurve << "\n";
   os << indent << "Rounds: " << this->Rounds << "\n";

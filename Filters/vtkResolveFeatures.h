@@ -43,6 +43,12 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkResolveFeatures : public vtkValidMeshSta
   vtkBooleanMacro(OpenEdges, bool);
   ///@}
   ///@{
+  /** Curves where the surface cuts itself at more than the sharp angle are features. */
+  vtkSetMacro(Intersections, bool);
+  vtkGetMacro(Intersections, bool);
+  vtkBooleanMacro(Intersections, bool);
+  ///@}
+  ///@{
   /** An open edge this close to another surface that meets it at an angle is a feature, length. */
   vtkSetClampMacro(GapTolerance, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(GapTolerance, double);
@@ -80,6 +86,7 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkResolveFeatures : public vtkValidMeshSta
   double CornerAngle;
   bool Interfaces;
   bool OpenEdges;
+  bool Intersections;
   double GapTolerance;
   double ShortestCurve;
   int Rounds;

@@ -52,6 +52,13 @@ def parser():
     p.add_argument("--refine-box", type=float, nargs=7, action="append", default=[],
                    metavar=("xmin", "ymin", "zmin", "xmax", "ymax", "zmax", "SIZE"),
                    help="cells in the box are at most SIZE large; may be repeated")
+    p.add_argument("--close-holes", choices=("coarse-to-fine", "offset"),
+                   help="close the holes that the octree would leak through, in a patch closed_holes; without it a leak "
+                   "is an error")
+    far = p.add_mutually_exclusive_group()
+    far.add_argument("--far-box", type=float, metavar="D",
+                     help="put the sides of the domain, but for zmin, this much farther out, on growing cells")
+    far.add_argument("--far-sphere", type=float, metavar="R", help="or a sphere of this radius around the domain")
     p.add_argument("--layers", type=int, metavar="N", help="boundary layers (default: 3; 0: keep the one prism)")
     p.add_argument("--first-height", type=float, metavar="H", help="height of the cell at the wall")
     p.add_argument("--expansion", type=float, metavar="R", help="height ratio of neighbouring layers (default: 1.2)")
@@ -71,7 +78,8 @@ def stage_index(text):
 def check_options(options):
     """What can be said before the geometry is read."""
     numbers = {"--feature-size": options.feature_size, "--base-size": options.base_size,
-               "--first-height": options.first_height, "--expansion": options.expansion}
+               "--first-height": options.first_height, "--expansion": options.expansion,
+               "--far-box": options.far_box, "--far-sphere": options.far_sphere}
     for name, value in numbers.items():
         if value is not None and not (math.isfinite(value) and value > 0):
             raise UserError(f"{name} must be a number larger than zero, not {value:g}.")
@@ -88,6 +96,8 @@ def check_options(options):
     for point in options.point or []:
         if not all(map(math.isfinite, point)):
             raise UserError("The coordinates of a --point must be finite numbers.")
+    if (options.far_box or options.far_sphere) and not options.domain:
+        raise UserError("A far field needs the sides of a --domain to start from.")
     if options.layers == 0:
         options.stop_after = min(options.stop_after, STAGES.index("ResolveFeatures"))
     for path in options.geometry:
@@ -209,9 +219,7 @@ def vtk_box(box):
     return box[0], box[3], box[1], box[4], box[2], box[5]
 
 
-def make_filters(pm, options):
-    """The stages' filters in order, with the user's options."""
-    octree, front = pm.vtkOctreeDecompose(), pm.vtkPaintFront()
+def set_octree(octree, options):
     octree.SetFeatureSize(options.feature_size or 0)
     octree.SetBaseSize(options.base_size or 0)
     if options.domain:
@@ -219,6 +227,12 @@ def make_filters(pm, options):
         octree.SetDomainBounds(*vtk_box(options.domain))
     for box in options.refine_box:
         octree.AddRefineBox(*vtk_box(box), box[6])
+
+
+def make_filters(pm, options):
+    """The stages' filters in order, with the user's options."""
+    octree, front = pm.vtkOctreeDecompose(), pm.vtkPaintFront()
+    set_octree(octree, options)
     if options.point:
         front.SetRegionToPoints()
         for point in options.point:
@@ -251,17 +265,51 @@ def read_geometry(pm, runner, options):
     return blocks if len(options.geometry) > 1 else blocks.GetBlock(0)
 
 
+def close_holes(pm, runner, options, geometry):
+    """The geometry without its holes; where they were is left in leaks.vtp."""
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+    holes = pm.vtkCloseHoles()
+    set_octree(holes, options)
+    for point in options.point or []:
+        holes.AddInsidePoint(*point)
+    holes.SetMethod({"coarse-to-fine": holes.COARSE_TO_FINE, "offset": holes.OFFSET}[options.close_holes])
+    holes.SetThreads(options.threads)
+    holes.SetPatchArray("PatchId")
+    holes.SetInputDataObject(0, geometry)
+    runner.run("CloseHoles", holes)
+    writer = vtkXMLPolyDataWriter()
+    writer.SetFileName(os.path.join(options.output, "leaks.vtp"))
+    writer.SetInputDataObject(holes.GetOutputDataObject(1))
+    writer.SetDataModeToBinary()
+    runner.run("write leaks.vtp", writer, writer.Write)
+    return holes.GetOutputDataObject(0)
+
+
+def add_far_field(pm, runner, options, mesh):
+    far = pm.vtkFarField()
+    far.SetExtendZmin(False)
+    if options.far_sphere:
+        far.SetShape(far.SPHERE)
+        far.SetRadius(options.far_sphere)
+    else:
+        far.SetDistance(options.far_box)
+    far.SetThreads(options.threads)
+    far.SetInputDataObject(0, mesh)
+    runner.run("FarField", far)
+    return far
+
+
 def mesh_geometry(pm, runner, options, geometry):
     """Runs the stages; the filters, of which the last still holds its outputs."""
     filters = make_filters(pm, options)
     grid = None
     for name, stage in zip(STAGES, filters):
         inputs = [data for data in (grid, geometry) if data is not None]
-        for port in range(stage.GetNumberOfInputPorts()):
-            stage.SetInputDataObject(port, inputs[port])
+        for port, data in enumerate(inputs):
+            stage.SetInputDataObject(port, data)
         runner.run(name, stage)
         grid = stage.GetOutputDataObject(0)
-        for port in range(stage.GetNumberOfInputPorts()):
+        for port in range(len(inputs)):
             stage.SetInputDataObject(port, None)  # free what is done with
     return filters
 
@@ -301,7 +349,7 @@ def clear_output(options):
     """Results of an earlier run must not be taken for this one's."""
     try:
         os.makedirs(options.output, exist_ok=True)
-        for name in ("mesh.vtu", "boundary.vtp", "section.png", "surface.png"):
+        for name in ("mesh.vtu", "boundary.vtp", "leaks.vtp", "section.png", "surface.png"):
             if os.path.exists(os.path.join(options.output, name)):
                 os.remove(os.path.join(options.output, name))
         shutil.rmtree(os.path.join(options.output, "polyMesh"), ignore_errors=True)
@@ -320,15 +368,20 @@ def main(arguments):
     import mesh_report
     runner = Runner()
     geometry = read_geometry(pm, runner, options)
+    if options.close_holes:
+        geometry = close_holes(pm, runner, options, geometry)
     filters = mesh_geometry(pm, runner, options, geometry)
+    last = filters[-1]
+    if (options.far_box or options.far_sphere) and options.stop_after > 0:
+        last = add_far_field(pm, runner, options, filters[-1].GetOutputDataObject(0))
     validity = None
     if options.stop_after > 0:
         validity = pm.vtkMeshValidity()
-        validity.SetInputDataObject(filters[-1].GetOutputDataObject(0))
+        validity.SetInputDataObject(last.GetOutputDataObject(0))
         runner.run("validity", validity)
-    write_results(pm, runner, options, filters[-1])
+    write_results(pm, runner, options, last)
     make_pictures(options)
-    mesh_report.print_report(filters, validity, runner.measured)
+    mesh_report.print_report(filters, last, validity, runner.measured)
     print(f"Results are in {options.output}")
     if validity and validity.GetViolations() > 0:
         raise UserError(f"The mesh is not valid: {sentence(validity.GetDescription())}")

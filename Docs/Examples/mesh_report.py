@@ -60,13 +60,14 @@ def layers(stage):
     return pairs
 
 
-def print_report(filters, validity, measured):
-    grid = filters[-1].GetOutputDataObject(0)
+def print_report(filters, last, validity, measured):
+    """filters: the stages that ran; last: the filter that holds the mesh, a stage or what came after it."""
+    grid = last.GetOutputDataObject(0)
     rows("Mesh", cells(grid))
     if validity:
         rows("Faces", [("internal", f"{validity.GetInternalFaces():,}"),
                        ("boundary", f"{validity.GetBoundaryFaces():,}")])
-        rows("Patches", patches(filters[-1].GetOutputDataObject(1)))
+        rows("Patches", patches(last.GetOutputDataObject(1)))
         rows("Worst measures", worst_measures(validity))
     if len(filters) > 4:
         rows("Features", features(filters[4]))

@@ -255,11 +255,15 @@ class Splitter {
     out_.layer = mesh_.layer;
     out_.level.resize(out_.cellCount);
     out_.layer.resize(out_.cellCount);
+    out_.zone = mesh_.zone;
+    out_.zoneNames = mesh_.zoneNames;
+    if (!out_.zone.empty()) out_.zone.resize(out_.cellCount);
     for (Id c = 0; c < columns_.count(); ++c) {
       const Id cell = columns_.cell(c);
       for (Id layer = 2; layer <= columns_.layers(c); ++layer) {
         out_.level[cellAt(cell, layer)] = mesh_.level[cell];
         out_.layer[cellAt(cell, layer)] = static_cast<std::uint8_t>(layer);
+        if (!out_.zone.empty()) out_.zone[cellAt(cell, layer)] = mesh_.zone[cell];
       }
     }
   }

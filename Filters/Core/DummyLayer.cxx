@@ -133,6 +133,7 @@ class LayerBuilder {
       prism[b] = out_.cellCount++;
       out_.level.push_back(in_.level[cell]);
       out_.layer.push_back(1);
+      if (!in_.zone.empty()) out_.zone.push_back(in_.zone[cell]);
       internal.push(row(b));
       owner.push_back(cell);
       neighbour.push_back(prism[b]);

@@ -183,15 +183,42 @@ void writeBoundary(const PolyMesh& mesh, const FaceOrder& order, FoamFile& file)
   file.text(fmt::format("{}\n(\n{})\n", count, entries));
 }
 
+/// Cells of each zone, ascending.
+Csr<Id> cellsOfZones(const PolyMesh& mesh) {
+  Csr<Id> cells;
+  cells.offsets.assign(mesh.zoneNames.size() + 1, 0);
+  for (Id zone : mesh.zone) ++cells.offsets[zone + 1];
+  std::partial_sum(cells.offsets.begin(), cells.offsets.end(), cells.offsets.begin());
+  cells.values.resize(mesh.zone.size());
+  std::vector<Id> next(cells.offsets.begin(), cells.offsets.end() - 1);
+  for (Id c = 0; c < static_cast<Id>(mesh.zone.size()); ++c) cells.values[next[mesh.zone[c]]++] = c;
+  return cells;
+}
+
+void writeCellZones(const PolyMesh& mesh, FoamFile& file, bool binary, Monitor& monitor) {
+  const std::vector<std::string> names = foamPatchNames(mesh.zoneNames);
+  const Csr<Id> cells = cellsOfZones(mesh);
+  file.header("regIOobject", binary);
+  file.text(fmt::format("{}\n(\n", names.size()));
+  for (Id zone = 0; zone < cells.rows(); ++zone) {
+    const Span<Id> row = cells[zone];
+    file.text(
+        fmt::format("{}\n{{\n    type            cellZone;\n    cellLabels      List<label> ", names[zone]));
+    labelList(file, std::vector<Id>(row.begin(), row.end()), binary, monitor, 0.95);
+    file.text(";\n}\n");
+  }
+  file.text(")\n");
+}
+
 /// What OpenFOAM would read beside the new files although it belongs to a former mesh.
-void removeStale(const fs::path& directory) {
+void removeStale(const fs::path& directory, bool hasZones) {
   std::error_code ignored;
   for (const char* name : {"points", "faces", "owner", "neighbour", "boundary"}) {
     fs::remove(directory / (std::string(name) + ".gz"), ignored);
   }
   for (const char* name :
        {"cellZones", "faceZones", "pointZones", "meshModifiers", "parallelData", "cells"}) {
-    fs::remove(directory / name, ignored);
+    if (!hasZones || std::strcmp(name, "cellZones") != 0) fs::remove(directory / name, ignored);
     fs::remove(directory / (std::string(name) + ".gz"), ignored);
   }
 }
@@ -239,7 +266,7 @@ void writePolyMesh(const PolyMesh& mesh, const std::string& directory, bool bina
   const FaceOrder order = orderByPatch(mesh);
   std::vector<std::unique_ptr<FoamFile>> files;
   const auto open = [&](const char* name) -> FoamFile& {
-    monitor.check(0.2 * static_cast<double>(files.size()), "writing the polyMesh folder");
+    monitor.check(std::min(0.95, 0.2 * static_cast<double>(files.size())), "writing the polyMesh folder");
     files.push_back(std::make_unique<FoamFile>(folder, name));
     return *files.back();
   };
@@ -257,10 +284,12 @@ void writePolyMesh(const PolyMesh& mesh, const std::string& directory, bool bina
   neighbourFile.header("labelList", binary, note);
   labelList(neighbourFile, mesh.neighbour, binary, monitor, 0.9);
   writeBoundary(mesh, order, open("boundary"));
+  const bool hasZones = mesh.zoneNames.size() > 1;
+  if (hasZones) writeCellZones(mesh, open("cellZones"), binary, monitor);
   for (const auto& file : files) file->close();
   monitor.check(1, "writing the polyMesh folder");
   for (const auto& file : files) file->publish();
-  removeStale(folder);
+  removeStale(folder, hasZones);
 }
 
 }  // namespace pm

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A mesh as an OpenFOAM polyMesh folder: points, faces, owner, neighbour, boundary.
+// A mesh as an OpenFOAM polyMesh folder: points, faces, owner, neighbour, boundary, and cellZones when the
+// mesh has zones.
 #pragma once
 
 #include <string>
@@ -13,7 +14,7 @@ namespace pm {
 /// Writes a canonical mesh (its internal faces are then in OpenFOAM's upper-triangular order) into
 /// `directory`, which is made when it does not exist. Boundary faces are grouped by patch, in the order of
 /// the patches; a patch without faces is left out, since OpenFOAM wants a boundary condition for each patch
-/// it finds. Coordinates keep every bit in ascii too. Either all five files are replaced, or none: they are
+/// it finds. Coordinates keep every bit in ascii too. Either all files are replaced, or none: they are
 /// written beside the old ones first. Files of a former mesh that would contradict the new one (zones,
 /// compressed copies) are removed. Throws InputError when the folder cannot be written or the disk is full,
 /// AbortError on request.

@@ -2,130 +2,264 @@
 #include "PaintFront.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <numeric>
 
 #include "FrontMesh.h"
 #include "FrontRepair.h"
+#include "LeakPaths.h"
 
 namespace pm {
 namespace {
-
-/// Face-connected sets of leaves for which `member` holds: a number for each leaf, kNone for the others.
-template <class Member>
-std::vector<Id> components(const Octree& tree, const Member& member, std::vector<PaintedRegion>& regions) {
-  std::vector<Id> number(tree.size(), kNone), stack;
-  regions.clear();
-  for (Id seed = 0; seed < tree.size(); ++seed) {
-    if (!member(seed) || number[seed] != kNone) continue;
-    const Id id = static_cast<Id>(regions.size());
-    PaintedRegion region;
-    stack.assign(1, seed);
-    number[seed] = id;
-    while (!stack.empty()) {
-      const Id leaf = stack.back();
-      stack.pop_back();
-      ++region.cells;
-      const Vec3 size = tree.brick.cellSize(tree.levels[leaf]);
-      region.volume += size.prod();
-      std::array<Id, 4> n;
-      for (int side = 0; side < 6; ++side) {
-        const int count = tree.faceNeighbours(leaf, side, n);
-        region.open = region.open || count == 0;
-        for (int k = 0; k < count; ++k)
-          if (member(n[k]) && number[n[k]] == kNone) {
-            number[n[k]] = id;
-            stack.push_back(n[k]);
-          }
-      }
-    }
-    regions.push_back(region);
-  }
-  return number;
-}
 
 std::string sizeHint(const Octree& tree) {
   return fmt::format("cells of {:.4g} at the surface", tree.brick.edge(tree.brick.maxLevel));
 }
 
-std::vector<std::uint8_t> chooseInside(const Octree& tree, const std::vector<PaintedRegion>& regions) {
-  std::vector<std::uint8_t> chosen(regions.size(), 0);
-  Id best = kNone;
-  for (Id r = 0; r < static_cast<Id>(regions.size()); ++r)
-    if (!regions[r].open && (best == kNone || regions[r].volume > regions[best].volume)) best = r;
-  if (best == kNone)
-    throw RegionError(
-        fmt::format("The geometry encloses nothing with {}: it leaks through a hole larger than a cell, or "
-                    "is too thin for a cell to fit inside. Use a larger or a smaller feature size, close "
-                    "the hole, or mesh the outside.",
-                    sizeHint(tree)));
-  chosen[best] = 1;
+/// A refusal that a search for the leak can explain.
+struct Leaking : RegionError {
+  Leaking(const std::string& sentence, std::vector<Vec3> points)
+      : RegionError(sentence), inside(std::move(points)) {}
+  std::vector<Vec3> inside;  ///< points of the region that leaks, where known
+};
+
+[[noreturn]] void refuseOpen(const Octree& tree) {
+  throw Leaking(
+      fmt::format("The geometry encloses nothing with {}: it leaks through a hole larger than a cell, or "
+                  "is too thin for a cell to fit inside. Use a larger or a smaller feature size, close "
+                  "the hole, or mesh the outside.",
+                  sizeHint(tree)),
+      {});
+}
+
+// Regions come largest first.
+std::vector<std::uint8_t> chooseEnclosed(const Octree& tree, const Regions& regions, bool all) {
+  std::vector<std::uint8_t> chosen(regions.list.size(), 0);
+  bool any = false;
+  for (std::size_t r = 0; r < chosen.size() && (all || !any); ++r) {
+    chosen[r] = !regions.list[r].open;
+    any = any || chosen[r] != 0;
+  }
+  if (!any) refuseOpen(tree);
   return chosen;
 }
 
-std::vector<std::uint8_t> chooseByPoints(const Octree& tree, const std::vector<PaintedRegion>& regions,
-                                         const std::vector<Id>& number, const PaintFrontOptions& options) {
-  std::vector<std::uint8_t> chosen(regions.size(), 0);
+void refuseLeak(const Octree& tree, const PaintedRegion& region, const PaintFrontOptions& options,
+                const std::string& which, const std::vector<Vec3>& inside) {
+  if (!region.open || tree.brick.sidesArePatches || options.allowOpen) return;
+  throw Leaking(
+      fmt::format(
+          "{} leaks: with {} it reaches the sides of the box around the geometry through a hole larger "
+          "than a cell. Use a larger feature size or close the hole.",
+          which, sizeHint(tree)),
+      inside);
+}
+
+std::vector<std::uint8_t> chooseByPoints(const Octree& tree, const Regions& regions,
+                                         const PaintFrontOptions& options) {
+  std::vector<std::uint8_t> chosen(regions.list.size(), 0);
   if (options.points.empty()) throw InputError("Choosing regions by points needs at least one point.");
   for (const Vec3& p : options.points) {
-    const std::string where = fmt::format("The point ({:g}, {:g}, {:g})", p[0], p[1], p[2]);
+    const std::string where = fmt::format("point ({:g}, {:g}, {:g})", p[0], p[1], p[2]);
     const Id leaf = tree.locate(p);
-    if (leaf == kNone) throw RegionError(where + " lies outside the domain; give one within the meshed box.");
-    if (number[leaf] == kNone)
-      throw RegionError(where +
+    if (leaf == kNone)
+      throw RegionError("The " + where + " lies outside the domain; give one within the meshed box.");
+    const Id id = regions.ofLeaf[leaf];
+    if (id == kNone)
+      throw RegionError("The " + where +
                         " lies in a cell that touches the geometry; move it away from the surface, or use a "
                         "smaller feature size.");
-    if (regions[number[leaf]].open && !tree.brick.sidesArePatches && !options.allowOpen)
-      throw RegionError(
-          fmt::format("The region of {} leaks: with {} it reaches the sides of the box around the geometry "
-                      "through a hole larger than a cell. Use a larger feature size or close the hole.",
-                      "the p" + where.substr(5), sizeHint(tree)));
-    chosen[number[leaf]] = 1;
+    refuseLeak(tree, regions.list[id], options, "The region of the " + where, {p});
+    chosen[id] = 1;
   }
+  return chosen;
+}
+
+std::vector<std::uint8_t> chooseByIds(const Octree& tree, const Regions& regions,
+                                      const PaintFrontOptions& options) {
+  std::vector<std::uint8_t> chosen(regions.list.size(), 0);
+  if (options.ids.empty()) throw InputError("Choosing regions by id needs at least one id.");
+  for (Id id : options.ids) {
+    if (id < 0 || id >= static_cast<Id>(regions.list.size()))
+      throw RegionError(fmt::format("There is no region {}: {} were found with {}, numbered from 0.", id,
+                                    regions.list.size(), sizeHint(tree)));
+    refuseLeak(tree, regions.list[id], options, fmt::format("Region {}", id), {});
+    chosen[id] = 1;
+  }
+  return chosen;
+}
+
+std::vector<std::uint8_t> chooseByPatches(const SurfaceModel& model, const Regions& regions,
+                                          const PaintFrontOptions& options) {
+  std::vector<std::uint8_t> chosen(regions.list.size(), 0), wanted(model.patchNames().size(), 0);
+  if (options.patches.empty()) throw InputError("Choosing regions by patch needs the name of a patch.");
+  for (const std::string& name : options.patches) {
+    const auto found = std::find(model.patchNames().begin(), model.patchNames().end(), name);
+    if (found == model.patchNames().end())
+      throw InputError(fmt::format("The geometry has no patch named {}; its patches are: {}.", name,
+                                   fmt::join(model.patchNames(), ", ")));
+    wanted[found - model.patchNames().begin()] = 1;
+  }
+  bool any = false;
+  for (std::size_t r = 0; r < chosen.size(); ++r) {
+    const PaintedRegion& region = regions.list[r];
+    chosen[r] = !region.open && std::any_of(region.patches.begin(), region.patches.end(),
+                                            [&](Id patch) { return wanted[patch] != 0; });
+    any = any || chosen[r];
+  }
+  if (!any)
+    throw RegionError(
+        fmt::format("No enclosed region touches {}: choose regions by id or by point, or close "
+                    "the holes.",
+                    fmt::join(options.patches, " or ")));
   return chosen;
 }
 
 // The outside holds the domain's corners. What merely touches a side (the inside of a wheel that pokes
 // through the ground) does not count, unless the geometry covers every corner; then the largest open region
 // is meant.
-std::vector<std::uint8_t> chooseOutside(const Octree& tree, const std::vector<PaintedRegion>& regions,
-                                        const std::vector<Id>& number) {
-  std::vector<std::uint8_t> chosen(regions.size(), 0);
+std::vector<std::uint8_t> chooseOutside(const Octree& tree, const Regions& regions) {
+  std::vector<std::uint8_t> chosen(regions.list.size(), 0);
   bool any = false;
   for (int k = 0; k < 8; ++k) {
     Coord c;
     for (int a = 0; a < 3; ++a) c[a] = (k >> a & 1) ? tree.brick.extent(a) - 1 : 0;
-    const Id region = number[tree.find(c)];
-    if (region != kNone) any = chosen[region] = true;
+    const Id region = regions.ofLeaf[tree.find(c)];
+    if (region == kNone) continue;
+    chosen[region] = 1;
+    any = true;
   }
   if (any) return chosen;
-  Id best = kNone;
-  for (Id r = 0; r < static_cast<Id>(regions.size()); ++r)
-    if (regions[r].open && (best == kNone || regions[r].volume > regions[best].volume)) best = r;
-  if (best == kNone)
+  for (std::size_t r = 0; r < chosen.size() && !any; ++r) {
+    chosen[r] = regions.list[r].open;
+    any = chosen[r] != 0;
+  }
+  if (!any)
     throw RegionError(
         "Nothing reaches the sides of the domain: the geometry fills it. Give a larger domain, or mesh the "
         "inside.");
-  chosen[best] = 1;
+  return chosen;
+}
+
+std::vector<std::uint8_t> choose(const Octree& tree, const SurfaceModel& model, const Regions& regions,
+                                 const PaintFrontOptions& options) {
+  switch (options.region) {
+    case Region::Inside:
+      return chooseEnclosed(tree, regions, false);
+    case Region::Enclosed:
+      return chooseEnclosed(tree, regions, true);
+    case Region::Outside:
+      return chooseOutside(tree, regions);
+    case Region::Points:
+      return chooseByPoints(tree, regions, options);
+    case Region::Ids:
+      return chooseByIds(tree, regions, options);
+    case Region::Patches:
+      return chooseByPatches(model, regions, options);
+    case Region::Everything:
+      break;
+  }
+  return std::vector<std::uint8_t>(regions.list.size(), 1);
+}
+
+// A leak is shown with its place, not only stated; and a small cavity is not taken for the domain without a
+// word.
+std::vector<std::uint8_t> chooseOrExplain(const Octree& tree, const SurfaceModel& model,
+                                          const Regions& regions, const PaintFrontOptions& options,
+                                          Monitor& monitor) {
+  std::vector<std::uint8_t> chosen;
+  try {
+    chosen = choose(tree, model, regions, options);
+  } catch (const Leaking& leak) {
+    throwLeak(leak.what(), tree, model, leak.inside, monitor);
+  }
+  if (options.region == Region::Inside)
+    for (std::size_t r = 0; r < chosen.size(); ++r)
+      if (chosen[r]) warnOfLargerRoom(regions.list[r].volume, tree, model, monitor);
   return chosen;
 }
 
 // Repair can cut a thin neck; what hangs on it alone would be a mesh of its own, so each region keeps its
 // largest part.
-void dropIslands(const Octree& tree, const std::vector<Id>& region, std::vector<std::uint8_t>& painted) {
-  std::vector<PaintedRegion> parts;
-  const std::vector<Id> part = components(
-      tree, [&](Id leaf) { return painted[leaf] != 0; }, parts);
-  std::vector<Id> home(parts.size(), kNone), largest;
-  for (Id leaf = 0; leaf < tree.size(); ++leaf)
-    if (painted[leaf] && region[leaf] != kNone) home[part[leaf]] = region[leaf];
-  largest.assign(region.empty() ? 0 : *std::max_element(region.begin(), region.end()) + 1, kNone);
-  for (Id p = 0; p < static_cast<Id>(parts.size()); ++p)
-    if (home[p] != kNone && (largest[home[p]] == kNone || parts[p].volume > parts[largest[home[p]]].volume))
+void dropIslands(const Octree& tree, const Regions& regions, std::vector<std::uint8_t>& painted) {
+  const std::vector<Id> part = connectedLeaves(tree, painted);
+  const Id parts = part.empty() ? 0 : *std::max_element(part.begin(), part.end()) + 1;
+  std::vector<Id> home(parts, kNone), largest(regions.list.size(), kNone);
+  std::vector<Key> volume(parts, 0);  // in finest cells
+  for (Id leaf = 0; leaf < tree.size(); ++leaf) {
+    if (!painted[leaf]) continue;
+    volume[part[leaf]] += Key(1) << (3 * (tree.brick.maxLevel - tree.levels[leaf]));
+    if (!tree.cut[leaf]) home[part[leaf]] = regions.ofLeaf[leaf];
+  }
+  for (Id p = 0; p < parts; ++p)
+    if (home[p] != kNone && (largest[home[p]] == kNone || volume[p] > volume[largest[home[p]]]))
       largest[home[p]] = p;
   for (Id leaf = 0; leaf < tree.size(); ++leaf)
     if (painted[leaf]) painted[leaf] = home[part[leaf]] != kNone && largest[home[part[leaf]]] == part[leaf];
+}
+
+// A region named by the user that repair has taken away altogether; of all those found some may be tiny.
+void warnOfLost(const std::vector<PaintedRegion>& regions, const std::vector<std::uint8_t>& chosen,
+                const PaintFrontOptions& options, Monitor& monitor) {
+  if (options.region == Region::Enclosed || options.region == Region::Everything) return;
+  for (std::size_t r = 0; r < chosen.size(); ++r)
+    if (chosen[r] && !regions[r].chosen)
+      monitor.warning(
+          fmt::format("Region {} is too narrow for its cells and is not in the mesh: none was left "
+                      "after repairing the front. Use a smaller feature size.",
+                      r));
+}
+
+// A zone has the name of its region's patch where that patch is the region's own, else its number.
+void nameZones(const std::vector<PaintedRegion>& regions, const std::vector<Id>& regionOfCell,
+               PolyMesh& mesh) {
+  std::vector<Id> zoneOf(regions.size(), kNone), users(mesh.patchNames.size(), 0);
+  Id zones = 0;
+  for (std::size_t r = 0; r < regions.size(); ++r) {
+    if (!regions[r].chosen) continue;
+    zoneOf[r] = zones++;
+    for (Id patch : regions[r].patches) ++users[patch];
+  }
+  if (zones < 2) return;
+  for (std::size_t r = 0; r < regions.size(); ++r) {
+    if (!regions[r].chosen) continue;
+    const std::vector<Id>& patches = regions[r].patches;
+    const bool own = patches.size() == 1 && users[patches[0]] == 1;
+    mesh.zoneNames.push_back(own ? mesh.patchNames[patches[0]] : fmt::format("region_{}", r));
+  }
+  mesh.zone.resize(regionOfCell.size());
+  for (std::size_t c = 0; c < regionOfCell.size(); ++c) mesh.zone[c] = zoneOf[regionOfCell[c]];
+}
+
+void noteInvisible(const NarrowPassages& invisible, const Octree& tree, std::vector<std::string>& notes) {
+  if (invisible.places.empty()) return;
+  const NarrowPlace& largest = invisible.places.front();
+  notes.push_back(fmt::format(
+      "{} of the domain too narrow for {} are not in the mesh, {} cells in all. The largest, about ({:.6g}, "
+      "{:.6g}, "
+      "{:.6g}), is {:.4g} wide; a feature size of {:.4g} would show it.",
+      invisible.places.size() == 1 ? "A place" : fmt::format("{} places", invisible.places.size()),
+      sizeHint(tree), invisible.cells.size(), largest.centre[0], largest.centre[1], largest.centre[2],
+      largest.median, largest.featureSize));
+}
+
+// Filling, then the repair of what is no permitted pattern, then whole regions only.
+void repairFront(const Octree& tree, const SurfaceModel& model, const PaintFrontOptions& options,
+                 Regions& regions, std::vector<std::uint8_t>& painted, Monitor& monitor,
+                 PaintFrontReport& report) {
+  FrontRepair repair(tree, model, painted, regions.ofLeaf);
+  if (options.fill) {
+    constexpr int kFillRounds = 4;  // each round may open one more cell of a narrowing gap
+    for (int round = 0; round < kFillRounds; ++round) {
+      const Id filled = repair.fill();
+      report.filled += filled;
+      if (filled == 0) break;
+    }
+  }
+  repair.clean(monitor, report);
+  dropIslands(tree, regions, painted);
 }
 
 }  // namespace
@@ -137,37 +271,37 @@ PolyMesh paintFront(const Octree& tree, const SurfaceModel& model, const PaintFr
   r = {};
 
   monitor.check(0, "painting");
-  const std::vector<Id> number = components(
-      tree, [&](Id leaf) { return !tree.cut[leaf]; }, r.regions);
-  const std::vector<std::uint8_t> chosen = options.region == Region::Inside ? chooseInside(tree, r.regions)
-                                           : options.region == Region::Outside
-                                               ? chooseOutside(tree, r.regions, number)
-                                               : chooseByPoints(tree, r.regions, number, options);
+  Regions regions = findRegions(tree, model);
+  const std::vector<std::uint8_t> chosen = chooseOrExplain(tree, model, regions, options, monitor);
   std::vector<std::uint8_t> painted(tree.size(), 0);
-  for (Id leaf = 0; leaf < tree.size(); ++leaf) painted[leaf] = number[leaf] != kNone && chosen[number[leaf]];
+  for (Id leaf = 0; leaf < tree.size(); ++leaf) {
+    const Id id = regions.ofLeaf[leaf];
+    painted[leaf] = id != kNone && chosen[id];
+  }
 
   monitor.check(0.3, "front filling");
-  FrontRepair repair(tree, model, painted);
-  if (options.fill) {
-    constexpr int kFillRounds = 4;  // each round may open one more cell of a narrowing gap
-    for (int round = 0; round < kFillRounds; ++round) {
-      const Id filled = repair.fill();
-      r.filled += filled;
-      if (filled == 0) break;
-    }
+  repairFront(tree, model, options, regions, painted, monitor, r);
+  for (Id leaf = 0; leaf < tree.size(); ++leaf) {
+    if (!painted[leaf]) continue;
+    r.regionOfCell.push_back(regions.ofLeaf[leaf]);
+    regions.list[regions.ofLeaf[leaf]].chosen = true;
   }
-  repair.clean(monitor, r);
-  dropIslands(tree, number, painted);
-  r.chosenCells = static_cast<Id>(std::count(painted.begin(), painted.end(), 1));
+  r.chosenCells = static_cast<Id>(r.regionOfCell.size());
   if (r.chosenCells == 0)
     throw RegionError(
         fmt::format("The region is too narrow for {}: no cell is left after repairing the front. Use a "
                     "smaller feature size.",
                     sizeHint(tree)));
-  std::stable_sort(r.regions.begin(), r.regions.end(),
-                   [](const PaintedRegion& a, const PaintedRegion& b) { return a.volume > b.volume; });
+  if (options.reportInvisible && report) {
+    r.invisible = findNarrowPassages(tree, model, painted, regions, monitor);
+    noteInvisible(r.invisible, tree, r.notes);
+  }
+  r.regions = std::move(regions.list);
+  warnOfLost(r.regions, chosen, options, monitor);
   monitor.check(0.85, "front mesh");
-  return frontMesh(tree, painted, model);
+  PolyMesh mesh = frontMesh(tree, painted, model);
+  nameZones(r.regions, r.regionOfCell, mesh);
+  return mesh;
 }
 
 }  // namespace pm

@@ -3,41 +3,46 @@
 #pragma once
 
 #include "Monitor.h"
+#include "NarrowPassages.h"
 #include "Octree.h"
 #include "PolyMesh.h"
+#include "Regions.h"
 #include "SurfaceModel.h"
 
 namespace pm {
 
 enum class Region : std::uint8_t {
-  Inside = 0,   ///< the largest enclosed region
-  Outside = 1,  ///< everything connected to the domain's sides
-  Points = 2,   ///< the regions that hold the given points
+  Inside = 0,      ///< the largest enclosed region
+  Outside = 1,     ///< everything connected to the domain's sides
+  Points = 2,      ///< the regions that hold the given points
+  Enclosed = 3,    ///< every enclosed region
+  Everything = 4,  ///< every region
+  Ids = 5,         ///< the regions of the given ids
+  Patches = 6,     ///< the enclosed regions that touch a given patch
 };
 
 struct PaintFrontOptions {
   Region region = Region::Inside;
-  std::vector<Vec3> points;  ///< for Region::Points
-  bool allowOpen = false;  ///< accept a region of given points that reaches the sides of an undeclared domain
-  bool fill = true;        ///< front filling (Fig. 3-33)
-};
-
-/// One face-connected set of leaves that no triangle touches.
-struct PaintedRegion {
-  Id cells = 0;
-  double volume = 0;
-  bool open = false;  ///< reaches the sides of the brick
+  std::vector<Vec3> points;          ///< for Region::Points
+  std::vector<Id> ids;               ///< for Region::Ids: places in PaintFrontReport::regions
+  std::vector<std::string> patches;  ///< for Region::Patches; touching any of them is enough
+  bool allowOpen = false;            ///< accept a named region that reaches the sides of an undeclared domain
+  bool fill = true;                  ///< front filling (Fig. 3-33)
+  bool reportInvisible = true;       ///< look for free space that is too narrow for the leaves
 };
 
 struct PaintFrontReport {
   std::vector<PaintedRegion> regions;  ///< largest volume first
+  std::vector<Id> regionOfCell;        ///< #C
+  NarrowPassages invisible;            ///< free space that is too narrow for the leaves
+  std::vector<std::string> notes;      ///< sentences for the user: what became invisible
   Id chosenCells = 0, grown = 0, removed = 0, filled = 0;
 };
 
 /// The domain's leaves as a mesh: cells in Morton order, front faces as boundary faces of patch 0.. by the
 /// closest triangle, domain sides in patches of their own. Every front node is in a permitted pattern (Fig.
-/// 3-31). Throws RegionError when nothing is enclosed, a point lies outside or on the geometry, or the region
-/// leaks.
+/// 3-31). Of several regions each is a zone of the mesh, and no two zones share a node. Throws RegionError
+/// when nothing is enclosed, a point lies outside or on the geometry, or the region leaks.
 PolyMesh paintFront(const Octree& tree, const SurfaceModel& model, const PaintFrontOptions& options,
                     Monitor& monitor, PaintFrontReport* report = nullptr);
 

@@ -2,11 +2,26 @@
 #include "Pipeline.h"
 
 namespace pm {
+namespace {
 
-PolyMesh runPipeline(const SurfaceModel& model, const PipelineOptions& options, Monitor& monitor,
+/// Null when holes are left as they are.
+std::unique_ptr<SurfaceModel> withoutHoles(const SurfaceModel& model, const PipelineOptions& options,
+                                           Monitor& monitor, PipelineReport& report) {
+  if (options.closeHoles == HoleMethod::ShowOnly) return nullptr;
+  CloseHolesOptions holes;
+  holes.method = options.closeHoles;
+  if (options.front.region == Region::Points) holes.search.insidePoints = options.front.points;
+  return closeHoles(model, options.octree, holes, monitor, &report.holes);
+}
+
+}  // namespace
+
+PolyMesh runPipeline(const SurfaceModel& given, const PipelineOptions& options, Monitor& monitor,
                      PipelineReport* report) {
   PipelineReport local;
   PipelineReport& r = report ? *report : local;
+  const std::unique_ptr<SurfaceModel> closed = withoutHoles(given, options, monitor, r);
+  const SurfaceModel& model = closed ? *closed : given;
   PolyMesh mesh;
   {
     const Octree tree = decompose(model, options.octree, monitor);

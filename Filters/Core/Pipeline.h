@@ -3,6 +3,7 @@
 #pragma once
 
 #include "BoundaryRefine.h"
+#include "CloseHoles.h"
 #include "DummyLayer.h"
 #include "OctreeDecompose.h"
 #include "PaintFront.h"
@@ -12,6 +13,7 @@
 namespace pm {
 
 struct PipelineOptions {
+  HoleMethod closeHoles = HoleMethod::ShowOnly;  ///< how holes are closed first; ShowOnly = they are not
   OctreeDecomposeOptions octree;
   PaintFrontOptions front;
   DummyLayerOptions layer;
@@ -22,6 +24,7 @@ struct PipelineOptions {
 };
 
 struct PipelineReport {
+  CloseHolesReport holes;
   PaintFrontReport front;
   ResolveFeaturesReport features;
   BoundaryRefineReport refine;

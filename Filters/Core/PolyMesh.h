@@ -29,8 +29,10 @@ struct PolyMesh {
       patchTypes;  // "wall" (from the geometry) or "patch" (a domain side), beside patchNames
   Id cellCount = 0;
 
-  std::vector<std::uint8_t> level;  // #C octree level; a layer cell has its front cell's
-  std::vector<std::uint8_t> layer;  // #C 0 = not a layer cell, 1 = at the wall, 2 = next to it, ...
+  std::vector<std::uint8_t> level;     // #C octree level; a layer cell has its front cell's
+  std::vector<std::uint8_t> layer;     // #C 0 = not a layer cell, 1 = at the wall, 2 = next to it, ...
+  std::vector<Id> zone;                // #C zone of each cell; empty when the mesh is one zone
+  std::vector<std::string> zoneNames;  // of each zone; empty when the mesh is one zone
   std::vector<std::uint8_t>
       fixed;              // #P bit a set: coordinate a may not move (the point lies on a domain side)
   std::vector<Id> base;   // #P for a wall point the lower end of its prism edge, else kNone
@@ -57,7 +59,7 @@ Csr<Id> pointFaces(const PolyMesh& mesh);
 /// Empty when the invariants hold, else one sentence naming the first that does not: ids in range, owner <
 /// neighbour, faces of three or more different points, every cell closed (each of its edges in exactly two of
 /// its faces), arrays of the right length, every point used, the boundary manifold (each boundary edge in two
-/// boundary faces).
+/// boundary faces), no face between cells of two zones.
 std::string checkTopology(const PolyMesh& mesh);
 
 /// Sum over the arrays that a saved grid must bring back unchanged; recognises a mesh that another tool has

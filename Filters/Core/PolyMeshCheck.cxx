@@ -78,6 +78,7 @@ std::string checkLengths(const PolyMesh& mesh) {
                                   differs("patchTypes", mesh.patchTypes.size(), mesh.patchNames.size()),
                                   differs("level", mesh.level.size(), cells),
                                   differs("layer", mesh.layer.size(), cells),
+                                  differs("zone", mesh.zone.size(), mesh.zoneNames.empty() ? 0 : cells),
                                   differs("fixed", mesh.fixed.size(), points),
                                   differs("base", mesh.base.size(), points)};
   for (const std::string& message : messages) {
@@ -117,6 +118,13 @@ std::string checkRanges(const PolyMesh& mesh) {
       return fmt::format("Face {} is in patch {}, which does not exist.", f, mesh.patch[f - internal]);
     }
   }
+  const Id zones = static_cast<Id>(mesh.zoneNames.size());
+  for (std::size_t c = 0; c < mesh.zone.size(); ++c)
+    if (outside(mesh.zone[c], zones))
+      return fmt::format("Cell {} is in zone {}, which does not exist.", c, mesh.zone[c]);
+  for (Id f = 0; f < internal && !mesh.zone.empty(); ++f)
+    if (mesh.zone[mesh.owner[f]] != mesh.zone[mesh.neighbour[f]])
+      return fmt::format("Face {} joins cells of two zones.", f);
   return {};
 }
 
@@ -234,6 +242,10 @@ std::uint64_t checksum(const PolyMesh& mesh) {
   hash = hashArray(hash, mesh.layer);
   hash = hashArray(hash, mesh.fixed);
   hash = hashArray(hash, mesh.base);
+  if (!mesh.zoneNames.empty()) {
+    hash = hashArray(hash, mesh.zone);
+    for (const std::string& name : mesh.zoneNames) hash = hashBytes(hash, name.data(), name.size());
+  }
   hash = hashBytes(hash, &mesh.finestSize, sizeof mesh.finestSize);
   hash = mix(hash, static_cast<std::uint64_t>(mesh.cellCount));
   return mix(hash, static_cast<std::uint64_t>(mesh.stage));

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "FrontPredicates.h"
 #include "MeshQuality.h"
 #include "OctreeDecompose.h"
 #include "PaintFront.h"
@@ -166,6 +167,44 @@ TEST(PaintFront, RandomSoupsGiveSoundFronts) {
   front.region = Region::Outside;
   for (unsigned seed = 0; seed < 8; ++seed)
     expectSound(paint(*randomSoup(60, 0.3, seed).model(), 0.0625, front, o));
+}
+
+/// Eight leaves of one level, `pattern` of them painted, inside a ring of unpainted ones.
+bool holds(unsigned pattern, bool (*predicate)(const Octree&, const std::vector<std::uint8_t>&)) {
+  Octree tree;
+  tree.brick.roots = {4, 4, 4};
+  for (Key key = 0; key < 64; ++key) tree.keys.push_back(key);
+  tree.levels.assign(64, 0);
+  tree.cut.assign(64, 0);
+  tree.index();
+  std::vector<std::uint8_t> painted(64, 0);
+  for (int k = 0; k < 8; ++k)
+    painted[tree.find({1 + (k & 1), 1 + (k >> 1 & 1), 1 + (k >> 2)})] = pattern >> k & 1;
+  return predicate(tree, painted);
+}
+
+TEST(FrontPredicates, KnowGoodAndBadFronts) {
+  for (unsigned good : {0x00u, 0x01u, 0x03u, 0x0fu, 0x17u, 0x7fu, 0xffu}) {
+    EXPECT_TRUE(holds(good, frontIsManifold)) << good;
+    EXPECT_TRUE(holds(good, frontIsPermitted)) << good;
+  }
+  for (unsigned bad : {0x09u, 0x81u, 0x7eu, 0xe7u}) {
+    EXPECT_FALSE(holds(bad, frontIsManifold)) << bad;
+    EXPECT_FALSE(holds(bad, frontIsPermitted)) << bad;
+  }
+  EXPECT_TRUE(holds(0x27, frontIsManifold)) << "a twisted chain of four is one sheet,";
+  EXPECT_FALSE(holds(0x27, frontIsPermitted)) << "but faces both ways (Fig. 3-30)";
+}
+
+TEST(FrontPredicates, PermittedIsManifoldWithoutOppositeFaces) {
+  int manifold = 0, permitted = 0;
+  for (unsigned p = 1; p < 255; ++p) {
+    manifold += isManifoldPattern(p);
+    permitted += isPermittedPattern(p);
+    EXPECT_TRUE(isManifoldPattern(p) || !isPermittedPattern(p)) << p;
+  }
+  EXPECT_EQ(permitted, 102);
+  EXPECT_EQ(manifold, 126);
 }
 
 }  // namespace

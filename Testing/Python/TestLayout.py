@@ -4,7 +4,8 @@ import ast
 import os
 import re
 import unittest
-import xml.etree.ElementTree as ElementTree
+
+import server_manager
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
 STAGES = ("OctreeDecompose", "PaintFront", "DummyLayer", "Project", "ResolveFeatures", "BoundaryRefine")
@@ -65,14 +66,16 @@ class Layout(unittest.TestCase):
         self.assertEqual(missing, [])
 
     def test_every_property_is_on_its_page(self):
-        """With its default; the validity limits, which many filters share, stand on the page of Mesh Validity."""
+        """With its default; the validity limits, which many filters share, stand on the page of Mesh Validity, those
+        of the octree, which Projection Mesh inherits, on that of Octree Decompose."""
         limits = read("Docs/MeshValidity.md")
+        filters = dict(server_manager.proxies(os.path.join(ROOT, "XML")))
         absent = []
         for stem in STAGES + ("ProjectionMesh", "MeshValidity"):
             page = read(f"Docs/{stem}.md")
-            for element in ElementTree.fromstring(read(f"XML/{stem}.xml")).iter():
-                if not element.tag.endswith("VectorProperty"):
-                    continue
+            if filters[stem].get("base_proxyname") == "OctreeProperties":
+                page += read("Docs/OctreeDecompose.md")
+            for element in server_manager.properties(filters[stem]):
                 name, default = element.get("name"), element.get("default_values", "")
                 row = re.search(rf"^\| `{name}` \| (.*?) \|", page + limits, re.M)
                 same = row and (element.tag != "DoubleVectorProperty" or default.startswith("0.333")
@@ -80,6 +83,13 @@ class Layout(unittest.TestCase):
                 if not same:
                     absent.append(f"{stem}.{name}")
         self.assertEqual(absent, [])
+
+    def test_bases_are_loaded_first(self):
+        """ParaView's window aborts when a proxy comes before the one that it inherits from."""
+        listed = re.search(r"set\(bases (.*?)\)\n.*PREPEND server_manager_xml \$\{bases\}", read("Plugin/CMakeLists.txt"), re.S)
+        bases = {f"{stem}.xml" for _, stem, element in server_manager.definitions(os.path.join(ROOT, "XML"))
+                 if element.tag not in server_manager.PROXIES}
+        self.assertEqual({os.path.basename(path) for path in listed.group(1).split()}, bases)
 
     def test_files_are_short(self):
         long = [f"{path}: {lines} lines" for path in sources()

@@ -2,7 +2,7 @@
 import unittest
 
 import numpy as np
-from support import Messages, arrays, chain, pm, sphere
+from support import Messages, arrays, chain, pm, sphere, strings
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkFiltersVerdict import vtkCellSizeFilter
 
@@ -44,6 +44,79 @@ class TestOctreeDecompose(unittest.TestCase):
         octree.ClearRefineBoxes()
         octree.Update()
         self.assertEqual(octree.GetOutput().GetNumberOfCells(), cells)
+
+    def test_every_leaf_says_why_it_is_small(self):
+        octree = pm.vtkOctreeDecompose()
+        octree.SetInputDataObject(sphere())
+        octree.SetFeatureSize(0.03)
+        octree.AddRefineSphere(0.6, 0.6, 0.6, 0.1, 0.03)
+        octree.AddPatchSize("wall", 0.06)
+        octree.Update()
+        found, names = arrays(octree.GetOutput()), strings(octree.GetOutput(), "RefinedByNames")
+        reason, patch = found["cell RefinedBy"], found["cell RefinedByPatch"]
+        self.assertEqual(len(names), 19)
+        self.assertTrue((found["cell Level"][reason == 0] == 0).all() and (reason[found["cell Level"] == 0] == 0).all())
+        self.assertGreater((reason == names.index("sphere")).sum(), 0)
+        by_patch = reason == names.index("patch size")
+        self.assertTrue(by_patch.any() and (patch[by_patch] == 0).all())
+        self.assertTrue((patch[reason == names.index("balance")] == -1).all())
+
+    def test_shapes_and_distances(self):
+        def cells(**rows):
+            octree = pm.vtkOctreeDecompose()
+            octree.SetInputDataObject(sphere())
+            octree.SetInputDataObject(1, sphere(radius=0.2))
+            octree.SetFeatureSize(0.02)
+            for name, values in rows.items():
+                getattr(octree, "Add" + name)(*values)
+            messages = Messages(octree)
+            octree.Update()
+            self.assertEqual(messages.errors, [])
+            return octree.GetOutput().GetNumberOfCells()
+
+        plain = cells()
+        self.assertGreater(cells(RefineSphere=(0, 0, 0, 0.2, 0.02)), plain)
+        self.assertGreater(cells(RefineCylinder=(0, 0, -0.3, 0, 0, 0.3, 0.1, 0.02)), plain)
+        self.assertGreater(cells(PatchDistance=("wall", 0.1, 0.02)), plain)
+        self.assertGreater(cells(SurfaceDistance=(0.05, 0.02)), plain)
+
+    def test_size_surface_serves_the_one_filter_too(self):
+        mesh = pm.vtkProjectionMesh()
+        mesh.SetInputDataObject(sphere())
+        mesh.SetFeatureSize(0.05)
+        mesh.SetStopAfter(2)
+        mesh.Update()
+        plain = mesh.GetOutput().GetNumberOfCells()
+        mesh.AddSurfaceDistance(0.1, 0.05)
+        messages = Messages(mesh)
+        mesh.Update()
+        self.assertIn("no size surface", "".join(messages.errors))
+        mesh.SetInputDataObject(1, sphere(radius=0.1))
+        mesh.Update()
+        self.assertGreater(mesh.GetOutput().GetNumberOfCells(), plain)
+
+    def test_refused_sizes(self):
+        for name, values in (("RefineSphere", (0, 0, 0, 0, 0.1)), ("RefineCylinder", (0, 0, 0, 0, 0, 0, 1, 0.1)),
+                             ("PatchDistance", ("nowhere", 0.1, 0.1)), ("PatchDistance", ("wall", 0.1, -1)),
+                             ("SurfaceDistance", (0.1, 0.1))):
+            octree = pm.vtkOctreeDecompose()
+            octree.SetInputDataObject(sphere())
+            octree.SetFeatureSize(0.1)
+            getattr(octree, "Add" + name)(*values)
+            messages = Messages(octree)
+            octree.Update()
+            self.assertEqual(len(messages.errors), 1, name)
+            self.assertEqual(octree.GetOutput().GetNumberOfCells(), 0)
+
+    def test_budget_of_memory(self):
+        octree = pm.vtkOctreeDecompose()
+        octree.SetInputDataObject(sphere())
+        octree.SetFeatureSize(0.01)
+        octree.SetMaximumMemory(0.001)
+        messages = Messages(octree)
+        octree.Update()
+        self.assertEqual(len(messages.errors), 1)
+        self.assertIn("0.001 GB", messages.errors[0])
 
     def test_budget(self):
         octree = pm.vtkOctreeDecompose()

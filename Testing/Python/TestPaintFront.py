@@ -2,8 +2,11 @@
 import math
 import unittest
 
-from support import Messages, arrays, chain, pm, sphere, strings
-from vtkmodules.vtkFiltersCore import vtkThreshold
+from support import Messages, arrays, box, chain, differences, pm, sphere, strings
+from vtkmodules.vtkCommonTransforms import vtkTransform
+from vtkmodules.vtkFiltersCore import vtkAppendPolyData, vtkThreshold
+from vtkmodules.vtkFiltersGeneral import vtkTransformPolyDataFilter
+from vtkmodules.vtkFiltersSources import vtkPlaneSource
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 
@@ -53,6 +56,80 @@ class TestPaintFront(unittest.TestCase):
         self.assertEqual(len(messages.errors), 1)
         self.assertEqual(front.GetOutputDataObject(0).GetNumberOfCells(), 0)
         self.assertEqual(front.GetOutputDataObject(1).GetNumberOfCells(), 0)
+        self.assertEqual(front.GetOutputDataObject(2).GetNumberOfRows(), 0)
+        self.assertEqual(front.GetOutputDataObject(3).GetNumberOfPoints(), 0)
+
+    def two_spheres(self):
+        small = vtkTransform()
+        small.Translate(1.2, 0, 0)
+        small.Scale(0.6, 0.6, 0.6)
+        moved = vtkTransformPolyDataFilter()
+        moved.SetInputData(self.geometry)
+        moved.SetTransform(small)
+        both = vtkAppendPolyData()
+        both.AddInputData(self.geometry)
+        both.AddInputConnection(moved.GetOutputPort())
+        both.Update()
+        return both.GetOutput()
+
+    def test_table_of_regions_and_zones(self):
+        geometry = self.two_spheres()
+        stages = chain(geometry, 0.05, Region=pm.vtkPaintFront.ENCLOSED)
+        table = stages[1].GetOutputDataObject(pm.vtkPaintFront.REGIONS)
+        self.assertTrue(table.IsA("vtkTable"))
+        self.assertEqual(table.GetNumberOfRows(), 3)
+        columns = [table.GetColumnName(i) for i in range(table.GetNumberOfColumns())]
+        self.assertEqual(columns, ["Region", "Volume", "Cells", "Open", "Chosen", "Zone", "Patches", "Point", "Bounds"])
+
+        def column(name):
+            return [table.GetValueByName(row, name) for row in range(3)]
+
+        self.assertEqual([v.ToInt() for v in column("Open")], [1, 0, 0])
+        self.assertEqual([v.ToInt() for v in column("Chosen")], [0, 1, 1])
+        self.assertEqual([v.ToString() for v in column("Zone")], ["", "region_1", "region_2"])
+        self.assertEqual([v.ToString() for v in column("Patches")], ["wall"] * 3)
+        front = arrays(stages[1].GetOutput())
+        self.assertEqual(sorted(set(front["cell Region"])), [1, 2])
+        self.assertTrue((front["cell Zone"] == front["cell Region"] - 1).all())
+        last = stages[-1].GetOutput()
+        self.assertEqual(strings(last, "ZoneNames"), ["region_1", "region_2"])
+        x = [last.GetCell(c).GetBounds()[0] for c in range(last.GetNumberOfCells())]
+        self.assertEqual([int(v > 0.7) for v in x], list(arrays(last)["cell Zone"]))
+        one = pm.vtkProjectionMesh()
+        one.SetInputDataObject(geometry)
+        one.SetFeatureSize(0.05)
+        one.SetRegion(pm.vtkPaintFront.IDS)
+        one.AddRegionId(1)
+        one.AddRegionId(2)
+        one.Update()
+        fields = ("field RegionCells", "field RegionVolume", "field RegionOpen")
+        self.assertEqual(differences(one.GetOutput(), last, fields), [])
+
+    def test_invisible_slot(self):
+        """Two plates 0.02 apart in a box, cells of 0.05: the space between them."""
+        slot = vtkAppendPolyData()
+        for z in (-0.01, 0.01):
+            plate = vtkPlaneSource()
+            plate.SetOrigin(-0.3, -0.3, z)
+            plate.SetPoint1(0.3, -0.3, z)
+            plate.SetPoint2(-0.3, 0.3, z)
+            plate.Update()
+            slot.AddInputData(plate.GetOutput())
+        slot.AddInputData(box())
+        slot.Update()
+        stages = chain(slot.GetOutput(), 0.05, last=2)
+        points = stages[1].GetOutputDataObject(pm.vtkPaintFront.INVISIBLE)
+        found = arrays(points)
+        self.assertGreater(points.GetNumberOfPoints(), 30)
+        self.assertEqual(points.GetNumberOfVerts(), points.GetNumberOfPoints())
+        self.assertTrue((abs(found["point Width"] - 0.02) < 1e-6).all())
+        self.assertTrue((abs(found["point FeatureSize"] - 0.01) < 1e-6).all())
+        self.assertTrue((abs(found["points"][:, 2]) < 1e-6).all())
+        self.assertEqual(list(found["field PlaceCells"]), [points.GetNumberOfPoints()])
+        self.assertIn("feature size of 0.01", strings(stages[1].GetOutput(), "Notes")[0])
+        stages[1].ReportInvisibleOff()
+        stages[1].Update()
+        self.assertEqual(stages[1].GetOutputDataObject(pm.vtkPaintFront.INVISIBLE).GetNumberOfPoints(), 0)
 
     def test_edited_octree_is_refused(self):
         threshold = vtkThreshold()

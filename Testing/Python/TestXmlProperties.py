@@ -1,26 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Each server-manager property has a setter of its name, the default of its class, and documentation."""
-import glob
 import os
 import re
 import unittest
-import xml.etree.ElementTree as ElementTree
 
+import server_manager
+from server_manager import properties
 from support import pm
 
-FILES = sorted(glob.glob(os.path.join(os.environ["PROJECTIONMESHER_XML"], "*.xml")))
-PROXIES = ("SourceProxy", "WriterProxy")
+FOLDER = os.environ["PROJECTIONMESHER_XML"]
 
 
 def proxies():
-    for path in FILES:
-        for proxy in ElementTree.parse(path).iter():
-            if proxy.tag in PROXIES:
-                yield os.path.splitext(os.path.basename(path))[0], proxy
-
-
-def properties(proxy):
-    return [p for p in proxy if p.tag.endswith("VectorProperty")]
+    return server_manager.proxies(FOLDER)
 
 
 def values_of(element):
@@ -32,11 +24,26 @@ def values_of(element):
 
 class TestXmlProperties(unittest.TestCase):
     def test_files_are_named_after_proxy_and_class(self):
-        self.assertEqual(len(FILES), 10)
+        self.assertGreaterEqual(len(list(proxies())), 10)
         for stem, proxy in proxies():
             self.assertEqual(proxy.get("name"), stem)
             self.assertEqual(proxy.get("class"), "vtk" + stem)
             self.assertTrue(hasattr(pm, "vtk" + stem), stem)
+
+    def test_a_base_is_used_and_holds_no_class(self):
+        used = {(e.get("base_proxygroup"), e.get("base_proxyname")) for _, _, e in server_manager.definitions(FOLDER)}
+        for key, stem, element in server_manager.definitions(FOLDER):
+            if element.tag == "Proxy":
+                self.assertIn(key, used, stem)
+                self.assertIsNone(element.get("class"), stem)
+            else:
+                self.assertIn(element.tag, server_manager.PROXIES, stem)
+
+    def test_each_name_once(self):
+        """Also among what is inherited: a property twice is one property that silently wins."""
+        for stem, proxy in proxies():
+            names = [e.get("name") for e in properties(proxy) + proxy.findall("InputProperty")]
+            self.assertEqual(sorted(names), sorted(set(names)), stem)
 
     def test_setters(self):
         for stem, proxy in proxies():
@@ -46,7 +53,7 @@ class TestXmlProperties(unittest.TestCase):
                 where = f"{stem}.{name}"
                 self.assertTrue(hasattr(algorithm, command), where)
                 if element.get("repeat_command") == "1":
-                    singular = re.sub("(?<=x)es$|s$", "", name)
+                    singular = re.sub("(?<=[xh])es$|s$", "", name)
                     self.assertEqual(command, "Add" + singular, where)
                     self.assertEqual(element.get("clean_command"), "Clear" + name, where)
                     self.assertTrue(hasattr(algorithm, "Clear" + name), where)
@@ -61,7 +68,7 @@ class TestXmlProperties(unittest.TestCase):
             for base in (c for c in cls.__mro__ if c.__module__.startswith("projection_mesher")):
                 for name in vars(base):
                     if re.match("(Set|Add|Clear)[A-Z]", name) and not re.match("SetRegionTo|Clear", name):
-                        if stem in ("DummyLayer", "BoundaryRefine", "MeshValidity") and name == "SetPatchArray":
+                        if stem in ("DummyLayer", "BoundaryRefine", "FarField", "MeshValidity") and name == "SetPatchArray":
                             continue  # takes no geometry
                         self.assertIn(name, own, f"{stem} has no property for {name}")
 
