@@ -49,6 +49,7 @@ int vtkMeshStage::RequestData(vtkInformation*, vtkInformationVector** inputs, vt
   }
   for (int port = 0; port < this->GetNumberOfOutputPorts(); ++port)
     vtkDataObject::GetData(outputs, port)->Initialize();
+  this->ShowFailure();
   return 0;
 }
 

@@ -61,6 +61,10 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkMeshStage : public vtkUnstructuredGridAl
   /// holds them until its next run, so that a change of an option need not prepare them again.
   std::shared_ptr<const pm::SurfaceModel> Surface(vtkInformationVector** inputs);
 
+  /// Called when Run() has thrown and the outputs are empty: a stage that can show why fills an output of its
+  /// own.
+  virtual void ShowFailure() {}
+
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkPaintFront.h"
 
+#include "LeakPacking.h"
+#include "LeakPaths.h"
 #include "MeshPacking.h"
 #include "OctreePacking.h"
 #include "PaintFront.h"
@@ -13,14 +15,15 @@
 #include "vtkUnstructuredGrid.h"
 
 struct vtkPaintFront::Lists {
-  std::vector<pm::Vec3> points;
+  std::vector<pm::Vec3> points, keepOut;
   std::vector<pm::Id> ids;
   std::vector<std::string> patches;
+  std::vector<pm::Leak> leaks;  ///< why the last run failed
 };
 
 vtkStandardNewMacro(vtkPaintFront);
 
-vtkPaintFront::vtkPaintFront() : vtkMeshStage(2, 1, 4), Repeated(std::make_unique<Lists>()) {
+vtkPaintFront::vtkPaintFront() : vtkMeshStage(2, 1, 5), Repeated(std::make_unique<Lists>()) {
   const pm::PaintFrontOptions defaults;
   this->Region = static_cast<int>(defaults.region);
   this->AllowOpen = defaults.allowOpen;
@@ -42,6 +45,21 @@ void vtkPaintFront::ClearSeedPoints() {
 }
 
 int vtkPaintFront::GetNumberOfSeedPoints() const { return static_cast<int>(this->Repeated->points.size()); }
+
+void vtkPaintFront::AddKeepOutPoint(double x, double y, double z) {
+  this->Repeated->keepOut.emplace_back(x, y, z);
+  this->Modified();
+}
+
+void vtkPaintFront::ClearKeepOutPoints() {
+  if (this->Repeated->keepOut.empty()) return;
+  this->Repeated->keepOut.clear();
+  this->Modified();
+}
+
+int vtkPaintFront::GetNumberOfKeepOutPoints() const {
+  return static_cast<int>(this->Repeated->keepOut.size());
+}
 
 void vtkPaintFront::AddRegionId(int id) {
   this->Repeated->ids.push_back(id);
@@ -82,6 +100,7 @@ pm::PaintFrontOptions vtkPaintFront::Options() const {
   pm::PaintFrontOptions options;
   options.region = static_cast<pm::Region>(this->Region);
   options.points = this->Repeated->points;
+  options.keepOut = this->Repeated->keepOut;
   options.ids = this->Repeated->ids;
   options.patches = this->Repeated->patches;
   options.allowOpen = this->AllowOpen;
@@ -96,7 +115,14 @@ void vtkPaintFront::Run(vtkInformationVector** inputs, vtkUnstructuredGrid* mesh
   const auto model = this->Surface(inputs);
   pm::listTriangles(tree, *model);
   pm::PaintFrontReport report;
-  const pm::PolyMesh front = pm::paintFront(tree, *model, this->Options(), monitor, &report);
+  pm::PolyMesh front;
+  this->Repeated->leaks.clear();
+  try {
+    front = pm::paintFront(tree, *model, this->Options(), monitor, &report);
+  } catch (pm::LeakError& leak) {
+    this->Repeated->leaks = std::move(leak.leaks);
+    throw;
+  }
   pm::packMesh(front, mesh);
   pm::packBoundary(front, boundary);
   pm::packRegions(report, mesh);
@@ -104,10 +130,15 @@ void vtkPaintFront::Run(vtkInformationVector** inputs, vtkUnstructuredGrid* mesh
   pm::packInvisible(report, front, vtkPolyData::SafeDownCast(this->GetOutputDataObject(INVISIBLE)));
 }
 
+void vtkPaintFront::ShowFailure() {
+  pm::packLeaks(this->Repeated->leaks, vtkPolyData::SafeDownCast(this->GetOutputDataObject(LEAKS)));
+}
+
 void vtkPaintFront::PrintSelf(ostream& os, vtkIndent indent) {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Region: " << this->Region << "\n";
   os << indent << "SeedPoints: " << this->GetNumberOfSeedPoints() << "\n";
+  os << indent << "KeepOutPoints: " << this->GetNumberOfKeepOutPoints() << "\n";
   os << indent << "RegionIds: " << this->GetNumberOfRegionIds() << "\n";
   os << indent << "RegionPatches: " << this->GetNumberOfRegionPatches() << "\n";
   os << indent << "AllowOpen: " << this->AllowOpen << "\n";

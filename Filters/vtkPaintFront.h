@@ -5,8 +5,9 @@
  *
  * Input 0: the grid of vtkOctreeDecompose; input 1: the geometry it was made from. Outputs: the domain's
  * cells and their boundary faces; a table of the regions found, largest first (see RegionPacking.h for its
- * columns), and points in what is too narrow for the cells. Several regions are zones of the mesh. Source:
- * thesis sections 3.4.2, 3.5.
+ * columns), and points in what is too narrow for the cells. Several regions are zones of the mesh. When a
+ * region leaks there is an error, and output 4 alone holds something: the leak paths (see LeakPacking.h).
+ * Source: thesis sections 3.4.2, 3.5, 3.6.3.
  */
 #pragma once
 
@@ -25,7 +26,7 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkPaintFront : public vtkMeshStage {
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /** Output ports after Mesh and Boundary. */
-  enum PortType { REGIONS = 2, INVISIBLE = 3 };
+  enum PortType { REGIONS = 2, INVISIBLE = 3, LEAKS = 4 };
 
   enum RegionType { INSIDE = 0, OUTSIDE = 1, POINTS = 2, ENCLOSED = 3, EVERYTHING = 4, IDS = 5, PATCHES = 6 };
   ///@{
@@ -47,6 +48,12 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkPaintFront : public vtkMeshStage {
   void AddSeedPoint(double x, double y, double z);
   void ClearSeedPoints();
   int GetNumberOfSeedPoints() const;
+  ///@}
+  ///@{
+  /** Points that must not be meshed: a region that holds one leaks, which is an error. */
+  void AddKeepOutPoint(double x, double y, double z);
+  void ClearKeepOutPoints();
+  int GetNumberOfKeepOutPoints() const;
   ///@}
   ///@{
   /** Ids of the wanted regions, as in the table of regions, for Region = Ids. */
@@ -87,6 +94,7 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkPaintFront : public vtkMeshStage {
  protected:
   vtkPaintFront();
   ~vtkPaintFront() override;
+  void ShowFailure() override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   void Run(vtkInformationVector** inputs, vtkUnstructuredGrid* mesh, vtkPolyData* boundary,
            pm::Monitor& monitor) override;

@@ -108,6 +108,9 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkProjectionMesh : public vtkValidMeshStag
   void AddSeedPoint(double x, double y, double z) { this->Front->AddSeedPoint(x, y, z); }
   void ClearSeedPoints() { this->Front->ClearSeedPoints(); }
   int GetNumberOfSeedPoints() const { return this->Front->GetNumberOfSeedPoints(); }
+  void AddKeepOutPoint(double x, double y, double z) { this->Front->AddKeepOutPoint(x, y, z); }
+  void ClearKeepOutPoints() { this->Front->ClearKeepOutPoints(); }
+  int GetNumberOfKeepOutPoints() const { return this->Front->GetNumberOfKeepOutPoints(); }
   void AddRegionId(int id) { this->Front->AddRegionId(id); }
   void ClearRegionIds() { this->Front->ClearRegionIds(); }
   int GetNumberOfRegionIds() const { return this->Front->GetNumberOfRegionIds(); }

@@ -49,6 +49,8 @@ def parser():
                    help="default: inside, or outside where a domain is given")
     p.add_argument("--point", type=float, nargs=3, action="append", metavar=("x", "y", "z"),
                    help="mesh the region that holds this point; may be repeated")
+    p.add_argument("--keep-out", type=float, nargs=3, action="append", metavar=("x", "y", "z"),
+                   help="a point that must not be meshed: reaching it is a leak; may be repeated")
     p.add_argument("--refine-box", type=float, nargs=7, action="append", default=[],
                    metavar=("xmin", "ymin", "zmin", "xmax", "ymax", "zmax", "SIZE"),
                    help="cells in the box are at most SIZE large; may be repeated")
@@ -93,9 +95,9 @@ def check_options(options):
                             " ".join(f"{v:g}" for v in box[:6]) + ".")
         if len(box) == 7 and box[6] <= 0:
             raise UserError(f"The cell size of a --refine-box must be larger than zero, not {box[6]:g}.")
-    for point in options.point or []:
+    for point in (options.point or []) + (options.keep_out or []):
         if not all(map(math.isfinite, point)):
-            raise UserError("The coordinates of a --point must be finite numbers.")
+            raise UserError("The coordinates of a point must be finite numbers.")
     if (options.far_box or options.far_sphere) and not options.domain:
         raise UserError("A far field needs the sides of a --domain to start from.")
     if options.layers == 0:
@@ -229,6 +231,10 @@ def set_octree(octree, options):
         octree.AddRefineBox(*vtk_box(box), box[6])
 
 
+def meshes_outside(options):
+    return not options.point and (options.region or ("outside" if options.domain else "inside")) == "outside"
+
+
 def make_filters(pm, options):
     """The stages' filters in order, with the user's options."""
     octree, front = pm.vtkOctreeDecompose(), pm.vtkPaintFront()
@@ -237,8 +243,10 @@ def make_filters(pm, options):
         front.SetRegionToPoints()
         for point in options.point:
             front.AddSeedPoint(*point)
-    elif (options.region or ("outside" if options.domain else "inside")) == "outside":
+    elif meshes_outside(options):
         front.SetRegionToOutside()
+    for point in options.keep_out or []:
+        front.AddKeepOutPoint(*point)
     refine = pm.vtkBoundaryRefine()
     if options.layers:
         refine.SetLayers(options.layers)
@@ -267,22 +275,28 @@ def read_geometry(pm, runner, options):
 
 def close_holes(pm, runner, options, geometry):
     """The geometry without its holes; where they were is left in leaks.vtp."""
-    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
     holes = pm.vtkCloseHoles()
     set_octree(holes, options)
     for point in options.point or []:
         holes.AddInsidePoint(*point)
+    for point in options.keep_out or []:
+        (holes.AddInsidePoint if meshes_outside(options) else holes.AddOutsidePoint)(*point)
     holes.SetMethod({"coarse-to-fine": holes.COARSE_TO_FINE, "offset": holes.OFFSET}[options.close_holes])
     holes.SetThreads(options.threads)
     holes.SetPatchArray("PatchId")
     holes.SetInputDataObject(0, geometry)
     runner.run("CloseHoles", holes)
+    write_leaks(options, holes.GetOutputDataObject(1))
+    return holes.GetOutputDataObject(0)
+
+
+def write_leaks(options, leaks):
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
     writer = vtkXMLPolyDataWriter()
     writer.SetFileName(os.path.join(options.output, "leaks.vtp"))
-    writer.SetInputDataObject(holes.GetOutputDataObject(1))
+    writer.SetInputDataObject(leaks)
     writer.SetDataModeToBinary()
-    runner.run("write leaks.vtp", writer, writer.Write)
-    return holes.GetOutputDataObject(0)
+    writer.Write()
 
 
 def add_far_field(pm, runner, options, mesh):
@@ -307,7 +321,13 @@ def mesh_geometry(pm, runner, options, geometry):
         inputs = [data for data in (grid, geometry) if data is not None]
         for port, data in enumerate(inputs):
             stage.SetInputDataObject(port, data)
-        runner.run(name, stage)
+        try:
+            runner.run(name, stage)
+        except UserError as error:
+            if name == "PaintFront" and stage.GetOutputDataObject(stage.LEAKS).GetNumberOfCells():
+                write_leaks(options, stage.GetOutputDataObject(stage.LEAKS))
+                raise UserError(f"{error} The ways are in {options.output}/leaks.vtp.") from error
+            raise
         grid = stage.GetOutputDataObject(0)
         for port in range(len(inputs)):
             stage.SetInputDataObject(port, None)  # free what is done with

@@ -237,9 +237,11 @@ LeakSearch findLeaks(const Octree& tree, const SurfaceModel& model, const LeakOp
 }
 
 void throwLeak(const std::string& sentence, const Octree& tree, const SurfaceModel& model,
-               const std::vector<Vec3>& insidePoints, Monitor& monitor) {
+               const std::vector<Vec3>& insidePoints, const std::vector<Vec3>& outsidePoints,
+               Monitor& monitor) {
   LeakOptions options;
   options.insidePoints = insidePoints;
+  options.outsidePoints = outsidePoints;
   std::vector<Leak> leaks = findLeaks(tree, model, options, monitor).leaks;
   if (leaks.empty()) throw RegionError(sentence);
   const std::string more = describe(leaks);

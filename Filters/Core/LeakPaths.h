@@ -70,9 +70,10 @@ double sealingSize(double width, const Brick& brick, RootCells roots);
 std::string describe(const std::vector<Leak>& leaks);
 
 /// Throws what is known of a leak: LeakError with the sentence and what describe() adds, or, when no path is
-/// found, RegionError with the sentence alone. insidePoints: as in LeakOptions.
+/// found, RegionError with the sentence alone. The points are those of LeakOptions.
 [[noreturn]] void throwLeak(const std::string& sentence, const Octree& tree, const SurfaceModel& model,
-                            const std::vector<Vec3>& insidePoints, Monitor& monitor);
+                            const std::vector<Vec3>& insidePoints, const std::vector<Vec3>& outsidePoints,
+                            Monitor& monitor);
 
 /// A warning when the enclosed region of this volume looks like a cavity beside a room that leaks: it fills
 /// little of the geometry's box, and a room behind a narrow opening is more than twice as large.

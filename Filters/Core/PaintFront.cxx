@@ -20,9 +20,9 @@ std::string sizeHint(const Octree& tree) {
 
 /// A refusal that a search for the leak can explain.
 struct Leaking : RegionError {
-  Leaking(const std::string& sentence, std::vector<Vec3> points)
-      : RegionError(sentence), inside(std::move(points)) {}
-  std::vector<Vec3> inside;  ///< points of the region that leaks, where known
+  Leaking(const std::string& sentence, std::vector<Vec3> from, std::vector<Vec3> to = {})
+      : RegionError(sentence), inside(std::move(from)), outside(std::move(to)) {}
+  std::vector<Vec3> inside, outside;  ///< points on either side of the leak, where known
 };
 
 [[noreturn]] void refuseOpen(const Octree& tree) {
@@ -164,6 +164,26 @@ std::vector<std::uint8_t> choose(const Octree& tree, const SurfaceModel& model, 
   return std::vector<std::uint8_t>(regions.list.size(), 1);
 }
 
+// What the user wants kept out and the region holds nevertheless is reached through a leak.
+void refuseKeptOut(const Octree& tree, const Regions& regions, const std::vector<std::uint8_t>& chosen,
+                   const PaintFrontOptions& options) {
+  for (const Vec3& p : options.keepOut) {
+    const Id leaf = tree.locate(p);
+    const Id id = leaf == kNone ? kNone : regions.ofLeaf[leaf];
+    if (id == kNone || !chosen[id]) continue;
+    const std::string sentence = fmt::format(
+        "The region leaks: with {} it reaches the point ({:g}, {:g}, {:g}), which is to be kept out, through "
+        "a hole larger than a cell. Use a larger feature size or close the hole.",
+        sizeHint(tree), p[0], p[1], p[2]);
+    if (regions.list[id].open) throw Leaking(sentence, {p});
+    Vec3 from = regions.list[id].point;
+    if (options.region == Region::Points)
+      for (const Vec3& q : options.points)
+        if (regions.ofLeaf[tree.locate(q)] == id) from = q;
+    throw Leaking(sentence, {from}, {p});
+  }
+}
+
 // A leak is shown with its place, not only stated; and a small cavity is not taken for the domain without a
 // word.
 std::vector<std::uint8_t> chooseOrExplain(const Octree& tree, const SurfaceModel& model,
@@ -172,8 +192,9 @@ std::vector<std::uint8_t> chooseOrExplain(const Octree& tree, const SurfaceModel
   std::vector<std::uint8_t> chosen;
   try {
     chosen = choose(tree, model, regions, options);
+    refuseKeptOut(tree, regions, chosen, options);
   } catch (const Leaking& leak) {
-    throwLeak(leak.what(), tree, model, leak.inside, monitor);
+    throwLeak(leak.what(), tree, model, leak.inside, leak.outside, monitor);
   }
   if (options.region == Region::Inside)
     for (std::size_t r = 0; r < chosen.size(); ++r)
@@ -301,6 +322,7 @@ PolyMesh paintFront(const Octree& tree, const SurfaceModel& model, const PaintFr
   monitor.check(0.85, "front mesh");
   PolyMesh mesh = frontMesh(tree, painted, model);
   nameZones(r.regions, r.regionOfCell, mesh);
+  r.painted = std::move(painted);
   return mesh;
 }
 

@@ -26,6 +26,7 @@ struct PaintFrontOptions {
   std::vector<Vec3> points;          ///< for Region::Points
   std::vector<Id> ids;               ///< for Region::Ids: places in PaintFrontReport::regions
   std::vector<std::string> patches;  ///< for Region::Patches; touching any of them is enough
+  std::vector<Vec3> keepOut;         ///< points that must not be meshed: the region leaks where it holds one
   bool allowOpen = false;            ///< accept a named region that reaches the sides of an undeclared domain
   bool fill = true;                  ///< front filling (Fig. 3-33)
   bool reportInvisible = true;       ///< look for free space that is too narrow for the leaves
@@ -34,6 +35,7 @@ struct PaintFrontOptions {
 struct PaintFrontReport {
   std::vector<PaintedRegion> regions;  ///< largest volume first
   std::vector<Id> regionOfCell;        ///< #C
+  std::vector<std::uint8_t> painted;   ///< #L 1 = the leaf is a cell of the mesh
   NarrowPassages invisible;            ///< free space that is too narrow for the leaves
   std::vector<std::string> notes;      ///< sentences for the user: what became invisible
   Id chosenCells = 0, grown = 0, removed = 0, filled = 0;

@@ -10,6 +10,8 @@ std::unique_ptr<SurfaceModel> withoutHoles(const SurfaceModel& model, const Pipe
   if (options.closeHoles == HoleMethod::ShowOnly) return nullptr;
   CloseHolesOptions holes;
   holes.method = options.closeHoles;
+  const bool outside = options.front.region == Region::Outside;
+  (outside ? holes.search.insidePoints : holes.search.outsidePoints) = options.front.keepOut;
   if (options.front.region == Region::Points) holes.search.insidePoints = options.front.points;
   return closeHoles(model, options.octree, holes, monitor, &report.holes);
 }

@@ -8,9 +8,11 @@
 #include <set>
 
 #include "FrontPredicates.h"
+#include "LeakPaths.h"
 #include "MeshQuality.h"
 #include "OctreeDecompose.h"
 #include "PaintFront.h"
+#include "TestRooms.h"
 #include "TestSurfaces.h"
 
 namespace {
@@ -155,6 +157,42 @@ TEST(PaintFront, LeaksAndBadPointsAreNamed) {
   EXPECT_THROW(paint(*model, 0.05, front), RegionError) << "the point is on the geometry";
   front.points.clear();
   EXPECT_THROW(paint(*model, 0.05, front), InputError);
+}
+
+// Two rooms of 1 by 1 by 1 with a duct of 0.2 by 0.2 between them, about (1.25, 0.5, 0.5).
+TEST(PaintFront, RegionThatHoldsAKeepOutPointLeaks) {
+  const auto duct = [](const Vec3& c) {
+    const bool between = c[0] > 1 && c[0] < 1.5;
+    return between && ((c - Vec3(1.25, 0.5, 0.5)).cwiseAbs().array() > Vec3(0.3, 0.1, 0.1).array()).any() ? 0
+                                                                                                          : 1;
+  };
+  const auto model =
+      rooms({std::vector<double>{0, 1, 1.5, 2.5}, {0, 0.4, 0.6, 1}, {0, 0.4, 0.6, 1}}, 1, duct).model();
+  PaintFrontOptions front;
+  front.keepOut = {Vec3(2.2, 0.5, 0.5)};
+  for (const bool seeded : {false, true}) {
+    if (seeded) {
+      front.region = Region::Points;
+      front.points = {Vec3(0.3, 0.5, 0.5)};
+    }
+    try {
+      paint(*model, 0.05, front);
+      FAIL() << "no leak";
+    } catch (const LeakError& leak) {
+      ASSERT_EQ(leak.leaks.size(), 1u);
+      EXPECT_LT((leak.leaks[0].bottleneck - Vec3(1.25, 0.5, 0.5))
+                    .cwiseAbs()
+                    .cwiseQuotient(Vec3(0.3, 0.1, 0.1))
+                    .maxCoeff(),
+                1);
+      EXPECT_NEAR(leak.leaks[0].width, 0.2, 0.02);
+      EXPECT_NE(std::string(leak.what()).find("kept out"), std::string::npos);
+    }
+  }
+  front.keepOut = {Vec3(1.25, 0.9, 0.9)};  // in the wall, which nothing reaches
+  PaintFrontReport report;
+  EXPECT_GT(paint(*model, 0.05, front, {}, &report).cellCount, 1000);
+  EXPECT_EQ(std::count(report.painted.begin(), report.painted.end(), 1), report.chosenCells);
 }
 
 TEST(PaintFront, RandomSoupsGiveSoundFronts) {

@@ -6,7 +6,7 @@ from support import Messages, arrays, box, chain, differences, pm, sphere, strin
 from vtkmodules.vtkCommonTransforms import vtkTransform
 from vtkmodules.vtkFiltersCore import vtkAppendPolyData, vtkThreshold
 from vtkmodules.vtkFiltersGeneral import vtkTransformPolyDataFilter
-from vtkmodules.vtkFiltersSources import vtkPlaneSource
+from vtkmodules.vtkFiltersSources import vtkPlaneSource, vtkSphereSource
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 
@@ -58,6 +58,38 @@ class TestPaintFront(unittest.TestCase):
         self.assertEqual(front.GetOutputDataObject(1).GetNumberOfCells(), 0)
         self.assertEqual(front.GetOutputDataObject(2).GetNumberOfRows(), 0)
         self.assertEqual(front.GetOutputDataObject(3).GetNumberOfPoints(), 0)
+
+    def test_leak_is_shown_on_a_port_of_its_own(self):
+        front = self.front(self.octree.GetOutput(), Region=1)
+        front.AddKeepOutPoint(0.9, 0, 0)  # outside the sphere, and so is the region
+        messages = Messages(front)
+        front.Update()
+        self.assertEqual(len(messages.errors), 1)
+        self.assertIn("kept out", messages.errors[0])
+        self.assertEqual(front.GetOutputDataObject(0).GetNumberOfCells(), 0)
+        front.ClearKeepOutPoints()
+        front.AddKeepOutPoint(0, 0, 0)
+        front.Update()
+        self.assertGreater(front.GetOutputDataObject(0).GetNumberOfCells(), 0)
+        self.assertEqual(front.GetOutputDataObject(pm.vtkPaintFront.LEAKS).GetNumberOfCells(), 0)
+
+    def test_leak_path_of_a_sphere_with_a_hole(self):
+        source = vtkSphereSource()  # open about its north pole: a hole 0.34 wide
+        source.SetThetaResolution(32)
+        source.SetPhiResolution(32)
+        source.SetStartPhi(20)
+        source.Update()
+        self.geometry = source.GetOutput()
+        front = self.front(chain(self.geometry, 0.04, last=1)[0].GetOutput())
+        messages = Messages(front)
+        front.Update()
+        self.assertEqual(len(messages.errors), 1)
+        self.assertIn("leak", messages.errors[0])
+        leaks = front.GetOutputDataObject(pm.vtkPaintFront.LEAKS)
+        self.assertEqual((leaks.GetNumberOfLines(), leaks.GetNumberOfVerts()), (1, 1))
+        bottleneck = leaks.GetPoint(leaks.GetVerts().GetConnectivityArray().GetValue(0))
+        self.assertLess(max(abs(bottleneck[0]), abs(bottleneck[1]), abs(bottleneck[2] - 0.47)), 0.04)
+        self.assertAlmostEqual(arrays(leaks)["cell NarrowestWidth"][0], 0.34, delta=0.03)
 
     def two_spheres(self):
         small = vtkTransform()
