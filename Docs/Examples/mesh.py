@@ -313,6 +313,13 @@ def add_far_field(pm, runner, options, mesh):
     return far
 
 
+def print_notes(grid):
+    """What a stage found that the user should know."""
+    notes = grid.GetFieldData().GetAbstractArray("Notes")
+    for i in range(notes.GetNumberOfValues() if notes else 0):
+        print(f"mesh.sh: note: {notes.GetValue(i)}", file=sys.stderr)
+
+
 def mesh_geometry(pm, runner, options, geometry):
     """Runs the stages; the filters, of which the last still holds its outputs."""
     filters = make_filters(pm, options)
@@ -329,6 +336,8 @@ def mesh_geometry(pm, runner, options, geometry):
                 raise UserError(f"{error} The ways are in {options.output}/leaks.vtp.") from error
             raise
         grid = stage.GetOutputDataObject(0)
+        if name == "PaintFront":
+            print_notes(grid)
         for port in range(len(inputs)):
             stage.SetInputDataObject(port, None)  # free what is done with
     return filters
