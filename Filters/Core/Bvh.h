@@ -39,6 +39,16 @@ class Bvh {
   template <class Visit>
   void overlapping(const Box& box, const Visit& visit) const;
 
+  /// Visits the slots of all nodes that enter(node, box) lets the search into, until visit(slot) returns true;
+  /// says whether it did.
+  template <class Enter, class Visit>
+  bool any(const Enter& enter, const Visit& visit) const;
+
+  /// A value for every node: that of its first slot with those of its other slots merged into it by
+  /// merge(value, other).
+  template <class Value, class OfSlot, class Merge>
+  std::vector<Value> nodeValues(const OfSlot& ofSlot, const Merge& merge) const;
+
  private:
   struct alignas(64) Node {
     Box box;
@@ -99,6 +109,35 @@ void Bvh::overlapping(const Box& box, const Visit& visit) const {
     for (Id child = node.first + 1; child >= node.first; --child)
       if (nodes_[child].box.overlaps(box)) stack[height++] = child;
   }
+}
+
+template <class Enter, class Visit>
+bool Bvh::any(const Enter& enter, const Visit& visit) const {
+  if (nodes_.empty() || !enter(Id(0), nodes_[0].box)) return false;
+  std::array<Id, kStackSize> stack;
+  int height = 0;
+  stack[height++] = 0;
+  while (height > 0) {
+    const Node& node = nodes_[stack[--height]];
+    for (Id slot = node.first; slot < node.first + node.count; ++slot)
+      if (visit(slot)) return true;
+    if (node.count > 0) continue;
+    for (Id child = node.first + 1; child >= node.first; --child)
+      if (enter(child, nodes_[child].box)) stack[height++] = child;
+  }
+  return false;
+}
+
+template <class Value, class OfSlot, class Merge>
+std::vector<Value> Bvh::nodeValues(const OfSlot& ofSlot, const Merge& merge) const {
+  std::vector<Value> values(nodes_.size());
+  for (Id i = static_cast<Id>(nodes_.size()) - 1; i >= 0; --i) {  // children have larger numbers
+    const Node& node = nodes_[i];
+    values[i] = node.count > 0 ? ofSlot(node.first) : values[node.first];
+    if (node.count == 0) merge(values[i], values[node.first + 1]);
+    for (Id k = 1; k < node.count; ++k) merge(values[i], ofSlot(node.first + k));
+  }
+  return values;
 }
 
 }  // namespace pm

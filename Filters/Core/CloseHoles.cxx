@@ -47,7 +47,7 @@ class Patchwork {
 };
 
 bool wanted(const Leak& leak, const CloseHolesOptions& o) {
-  return o.maximumWidth == 0 || leak.width <= o.maximumWidth;
+  return !leak.wide && (o.maximumWidth == 0 || leak.width <= o.maximumWidth);
 }
 
 std::vector<Vec3> placesOf(const std::vector<Pocket>& pockets, const Octree& tree) {
@@ -68,6 +68,7 @@ class Closer {
     LeakOptions search = options_.search;
     search.maximumLeaks = 0;
     search.roots = rootCellsOf(octree_);
+    search.wideOpenings = options_.method == HoleMethod::ShowOnly;
     for (int round = 0; round < kRounds; ++round) {
       const Octree tree = decompose(*current_, octree_, monitor_);
       LeakSearch found = findLeaks(tree, *current_, search, monitor_);

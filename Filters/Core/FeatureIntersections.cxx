@@ -94,7 +94,7 @@ class IntersectionLinks {
   bool isCovered(const FeatureNetwork::Link& link, const LinkLookup& firm) const {
     const Vec3 d = at(link.b) - at(link.a);
     for (const double place : {0.0, 0.25, 0.5, 0.75, 1.0})
-      if (firm.nearest(at(link.a) + place * d, tolerance2_, d).link == kNone) return false;
+      if (!firm.reaches(at(link.a) + place * d, tolerance2_, d)) return false;
     return true;
   }
 

@@ -75,14 +75,17 @@ void splitLinks(const std::vector<Vec3>& points, Links& links, std::vector<std::
 LinkLookup::LinkLookup(const std::vector<Vec3>& points, const Links& links)
     : points_(points), links_(links), bvh_(bvhOver(points, links)) {}
 
+bool LinkLookup::isAlong(Id link, const Vec3& direction) const {
+  const Vec3 along = points_[links_[link].b] - points_[links_[link].a];
+  return std::abs(along.dot(direction)) >= kAlongCosine * direction.norm() * along.norm();
+}
+
 LinkFoot LinkLookup::nearest(const Vec3& p, double bound2, const Vec3& direction) const {
   LinkFoot best;
-  const double least = kAlongCosine * direction.norm();
   const auto offer = [&](Id slot) {
     LinkFoot found;
     found.link = bvh_.order()[slot];
-    const Vec3 along = points_[links_[found.link].b] - points_[links_[found.link].a];
-    if (std::abs(along.dot(direction)) < least * along.norm()) return;
+    if (!isAlong(found.link, direction)) return;
     closestOnEdge(p, points_[links_[found.link].a], points_[links_[found.link].b], found);
     if (found.distance2 > bound2) return;
     if (found.distance2 < best.distance2 || (found.distance2 == best.distance2 && found.link < best.link))
@@ -91,6 +94,20 @@ LinkFoot LinkLookup::nearest(const Vec3& p, double bound2, const Vec3& direction
   bvh_.nearest(
       p, [&] { return std::min(bound2, best.distance2); }, offer);
   return best;
+}
+
+bool LinkLookup::reaches(const Vec3& p, double bound2, const Vec3& direction) const {
+  bool found = false;
+  const auto offer = [&](Id slot) {
+    const Id link = bvh_.order()[slot];
+    if (found || !isAlong(link, direction)) return;
+    LinkFoot foot;
+    closestOnEdge(p, points_[links_[link].a], points_[links_[link].b], foot);
+    found = foot.distance2 <= bound2;
+  };
+  bvh_.nearest(
+      p, [&] { return found ? -1 : bound2; }, offer);
+  return found;
 }
 
 }  // namespace pm

@@ -48,8 +48,12 @@ class LinkLookup {
   /// Nothing farther than the square root of bound2; of links within 30 degrees of the direction only, when
   /// it is not zero.
   LinkFoot nearest(const Vec3& p, double bound2, const Vec3& direction = Vec3::Zero()) const;
+  /// Would nearest() find anything? Ends with the first link that will do.
+  bool reaches(const Vec3& p, double bound2, const Vec3& direction = Vec3::Zero()) const;
 
  private:
+  bool isAlong(Id link, const Vec3& direction) const;
+
   const std::vector<Vec3>& points_;
   const FeatureNetwork::Links& links_;
   Bvh bvh_;

@@ -8,6 +8,7 @@
 #include <queue>
 
 #include "Clearance.h"
+#include "RimFilms.h"
 
 namespace pm {
 namespace {
@@ -122,6 +123,8 @@ struct Markers {
   std::vector<Marker> inside;
   std::vector<Id> outside, starts;  // starts: where paths begin
   std::vector<Pocket> pockets;
+  std::vector<double> clearance;  // the order of flooding
+  RimFilms rims;                  // what it is guided by, if anything
 };
 
 // Leaves in the empty ball around a given point are on its side too: nothing lies between.
@@ -143,37 +146,77 @@ void addBall(const Octree& tree, const std::vector<double>& clearance, const Csr
   }
 }
 
-Markers chooseMarkers(const Octree& tree, const SurfaceModel& model, const std::vector<double>& clearance,
-                      const Csr<Id>& graph, const LeakOptions& options) {
-  Markers m;
-  m.outside = outsideLeaves(tree, options.outsidePoints);
-  const bool given = !options.insidePoints.empty();
-  const double smallest = given ? 0 : options.smallestRoom * model.bounds().size().prod();
-  const Pockets found = findPockets(tree, clearance, graph, m.outside, options.roominess, smallest);
-  if (!given) {
-    m.pockets = found.pockets;
-    for (const Pocket& p : m.pockets) {
-      m.inside.push_back({p.peak, p.peakClearance});
-      m.starts.push_back(p.peak);
-    }
-    return m;
+/// #L 1 = a way leads there from the given leaves.
+std::vector<std::uint8_t> connectedWith(const std::vector<Id>& leaves, const Csr<Id>& graph) {
+  std::vector<std::uint8_t> reached(graph.offsets.size() - 1, 0);
+  std::vector<Id> stack = leaves;
+  for (Id leaf : leaves) reached[leaf] = 1;
+  while (!stack.empty()) {
+    const Id leaf = stack.back();
+    stack.pop_back();
+    for (Id n : graph[leaf])
+      if (!reached[n]) {
+        reached[n] = 1;
+        stack.push_back(n);
+      }
   }
+  return reached;
+}
+
+/// Leaves of the given points, which must not be outside already.
+std::vector<Id> insideLeaves(const Octree& tree, const LeakOptions& options, const std::vector<Id>& outside) {
+  std::vector<Id> leaves;
   for (const Vec3& p : options.insidePoints) {
-    const Id leaf = freeLeafAt(tree, p);
-    if (std::find(m.outside.begin(), m.outside.end(), leaf) != m.outside.end())
+    leaves.push_back(freeLeafAt(tree, p));
+    if (std::find(outside.begin(), outside.end(), leaves.back()) != outside.end())
       throw InputError(
           fmt::format("The inside point ({:g}, {:g}, {:g}) is outside too; give another.", p[0], p[1], p[2]));
-    m.starts.push_back(leaf);
-    const Id room = found.pocketOfLeaf[leaf];
-    if (room == kNone) {
-      addBall(tree, clearance, graph, leaf, m.inside);
-      m.pockets.push_back({leaf, clearance[leaf], clearance[leaf], 0});
-    } else {
-      const Pocket& pocket = found.pockets[room];
-      m.inside.insert(m.inside.end(), {{leaf, clearance[leaf]}, {pocket.peak, pocket.peakClearance}});
-      m.pockets.push_back(pocket);
-    }
   }
+  return leaves;
+}
+
+void addRooms(const Pockets& found, Markers& m) {
+  for (const Pocket& p : found.pockets) {
+    m.pockets.push_back(p);
+    m.inside.push_back({p.peak, p.peakClearance});
+    m.starts.push_back(p.peak);
+  }
+}
+
+void addRoomOf(Id leaf, const Pockets& found, const Octree& tree, const Csr<Id>& graph, Markers& m) {
+  m.starts.push_back(leaf);
+  const Id room = found.pocketOfLeaf[leaf];
+  if (room == kNone) {
+    addBall(tree, m.clearance, graph, leaf, m.inside);
+    m.pockets.push_back({leaf, m.clearance[leaf], m.clearance[leaf], 0});
+  } else {
+    const Pocket& pocket = found.pockets[room];
+    m.inside.insert(m.inside.end(), {{leaf, m.clearance[leaf]}, {pocket.peak, pocket.peakClearance}});
+    m.pockets.push_back(pocket);
+  }
+}
+
+Markers chooseMarkers(const Octree& tree, const SurfaceModel& model, const std::vector<double>& clearance,
+                      const Csr<Id>& graph, const LeakOptions& options, Monitor& monitor) {
+  Markers m;
+  m.clearance = clearance;
+  m.outside = outsideLeaves(tree, options.outsidePoints);
+  const std::vector<Id> given = insideLeaves(tree, options, m.outside);
+  const double smallest = given.empty() ? options.smallestRoom * model.bounds().size().prod() : 0;
+  Pockets found = findPockets(tree, clearance, graph, m.outside, options.roominess, smallest);
+  bool noRoom = given.empty() && options.wideOpenings && found.pockets.empty();
+  if (!given.empty()) {
+    const std::vector<std::uint8_t> leaky = connectedWith(m.outside, graph);
+    noRoom = std::any_of(given.begin(), given.end(),
+                         [&](Id leaf) { return leaky[leaf] && found.pocketOfLeaf[leaf] == kNone; });
+  }
+  if (noRoom) {
+    m.rims = spanRims(model, tree.brick.edge(tree.brick.maxLevel), monitor);
+    m.clearance = guidedClearance(tree, clearance, m.rims);
+    found = findPockets(tree, m.clearance, graph, m.outside, options.roominess, smallest);
+  }
+  if (given.empty()) addRooms(found, m);
+  for (Id leaf : given) addRoomOf(leaf, found, tree, graph, m);
   return m;
 }
 
@@ -211,16 +254,17 @@ LeakSearch findLeaks(const Octree& tree, const SurfaceModel& model, const LeakOp
   const std::vector<double> clearance = leafClearance(tree, model, monitor);
   monitor.check(0.5, "flooding");
   const Csr<Id> graph = freeNeighbours(tree);
-  Markers markers = chooseMarkers(tree, model, clearance, graph, options);
+  Markers markers = chooseMarkers(tree, model, clearance, graph, options, monitor);
   search.pockets = std::move(markers.pockets);
   if (markers.inside.empty()) {
     search.sides.assign(tree.size(), Side::None);
     return search;
   }
   monitor.check(0.6, "flooding");
-  search.sides = floodSides(tree, clearance, graph, markers.inside, markers.outside);
+  search.sides = floodSides(tree, markers.clearance, graph, markers.inside, markers.outside);
   monitor.check(0.7, "membranes");
-  std::vector<Membrane> membranes = membranesBetween(tree, model, clearance, graph, search.sides, monitor);
+  std::vector<Membrane> membranes =
+      membranesBetween(tree, model, clearance, graph, search.sides, &markers.rims, monitor);
   std::stable_sort(membranes.begin(), membranes.end(),
                    [](const Membrane& a, const Membrane& b) { return a.width > b.width; });
   if (options.maximumLeaks > 0 && static_cast<int>(membranes.size()) > options.maximumLeaks)
@@ -232,6 +276,7 @@ LeakSearch findLeaks(const Octree& tree, const SurfaceModel& model, const LeakOp
   for (Membrane& m : membranes) {
     search.leaks.push_back(leakThrough(std::move(m), tree, model, clearance, inner, outer, options));
     search.leaks.back().sealingSize = sealingSize(search.leaks.back().width, tree.brick, options.roots);
+    search.leaks.back().wide = options.insidePoints.empty() && markers.rims.surface;
   }
   return search;
 }

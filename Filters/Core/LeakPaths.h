@@ -30,6 +30,7 @@ struct LeakOptions {
   double roominess =
       2;  ///< found rooms: clearance in the room over clearance of its widest way out, at least
   double smallestRoom = 1e-4;  ///< found rooms: volume over that of the geometry's box, at least
+  bool wideOpenings = false;   ///< where no room is found: rooms whose opening is as wide as themselves
   int maximumLeaks = 100;      ///< the widest are kept; 0 = all
   RootCells roots = RootCells::Unknown;
 };
@@ -41,6 +42,7 @@ struct Leak {
   std::vector<Vec3> path;      ///< from inside to outside; no segment touches the geometry
   std::vector<double> widths;  ///< #path twice the clearance, length
   Id bottleneckRow = 0;        ///< row of the path at the bottleneck
+  bool wide = false;  ///< about as wide as the room it leads to, and no inside point tells what it is
   Membrane membrane;
 };
 

@@ -8,6 +8,8 @@
 #include <map>
 #include <numeric>
 
+#include "RimFilms.h"
+
 namespace pm {
 namespace {
 
@@ -156,30 +158,6 @@ Csr<Id> neighbours(Membrane& m) {
   return graph;
 }
 
-// Gauss-Seidel in the order of points: twice as fast as Jacobi, and the same for any number of threads. A rim
-// point stays within `slide` of where it met the geometry first.
-void relax(Membrane& m, const SurfaceModel& model, double slide, Monitor& monitor) {
-  const Csr<Id> graph = neighbours(m);
-  for (std::size_t p = 0; p < m.points.size(); ++p)
-    if (m.onRim[p]) m.points[p] = model.closest(m.points[p]).point;
-  const std::vector<Vec3> start = m.points;
-  constexpr int fewest = 20, most = 300;
-  const int sweeps = std::clamp(static_cast<int>(2 * std::sqrt(double(m.points.size()))), fewest, most);
-  for (int sweep = 0; sweep < sweeps; ++sweep) {
-    monitor.check(double(sweep) / sweeps, "membranes");
-    for (Id p = 0; p < static_cast<Id>(m.points.size()); ++p) {
-      Vec3 middle = Vec3::Zero();
-      for (Id n : graph[p]) middle += m.points[n];
-      middle /= double(graph[p].size());
-      if (m.onRim[p]) {
-        middle = model.closest(middle).point;
-        if ((middle - start[p]).norm() > slide) continue;
-      }
-      m.points[p] = middle;
-    }
-  }
-}
-
 /// Place of the largest clearance on a membrane, found by halving triangles: clearance changes no faster than
 /// place.
 struct Widest {
@@ -250,6 +228,39 @@ Membrane relaxed(const Membrane& start, const Octree& tree, const SurfaceModel& 
   return m;
 }
 
+/// Row of the film that all of a skin follows within its own cells; kNone when there is none.
+Id filmAlong(const Membrane& skin, const Octree& tree, const RimFilms* rims) {
+  if (!rims || !rims->surface) return kNone;
+  Id film = kNone;
+  for (std::size_t t = 0; t < skin.triangles.size(); ++t) {
+    const auto& ids = skin.triangles[t];
+    const Vec3 centre = (skin.points[ids[0]] + skin.points[ids[1]] + skin.points[ids[2]]) / 3;
+    double reach = 0;
+    for (Id leaf : skin.leafPairs[t]) reach += tree.brick.edge(tree.levels[leaf]);
+    const Closest c = rims->surface->closest(centre);
+    const Id here = rims->surface->patchOf(c.triangle);
+    if (c.distance2 > reach * reach || (film != kNone && here != film)) return kNone;
+    film = here;
+  }
+  return film;
+}
+
+Vec3 areaVector(const Membrane& m) {
+  Vec3 sum = Vec3::Zero();
+  for (const auto& t : m.triangles)
+    sum += 0.5 * (m.points[t[1]] - m.points[t[0]]).cross(m.points[t[2]] - m.points[t[0]]);
+  return sum;
+}
+
+/// The film in place of a skin that follows it: its rim is the opening's own edge.
+Membrane asFilm(const Membrane& skin, Membrane film, const Octree& tree, const SurfaceModel& model) {
+  if (areaVector(skin).dot(areaVector(film)) < 0)
+    for (auto& t : film.triangles) std::swap(t[1], t[2]);
+  film.leafPairs = skin.leafPairs;
+  measure(film, tree, model);
+  return film;
+}
+
 }  // namespace
 
 void quarter(std::vector<Vec3>& points, std::vector<std::array<Id, 3>>& triangles) {
@@ -268,12 +279,41 @@ void quarter(std::vector<Vec3>& points, std::vector<std::array<Id, 3>>& triangle
   triangles = std::move(out);
 }
 
+// Gauss-Seidel in the order of points: twice as fast as Jacobi, and the same for any number of threads.
+void relax(Membrane& m, const SurfaceModel& model, double slide, Monitor& monitor) {
+  const Csr<Id> graph = neighbours(m);
+  for (std::size_t p = 0; p < m.points.size(); ++p)
+    if (m.onRim[p]) m.points[p] = model.closest(m.points[p]).point;
+  const std::vector<Vec3> start = m.points;
+  constexpr int fewest = 20, most = 300;
+  const int sweeps = std::clamp(static_cast<int>(2 * std::sqrt(double(m.points.size()))), fewest, most);
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    monitor.check(double(sweep) / sweeps, "membranes");
+    for (Id p = 0; p < static_cast<Id>(m.points.size()); ++p) {
+      Vec3 middle = Vec3::Zero();
+      for (Id n : graph[p]) middle += m.points[n];
+      middle /= double(graph[p].size());
+      if (m.onRim[p]) {
+        middle = model.closest(middle).point;
+        if ((middle - start[p]).norm() > slide) continue;
+      }
+      m.points[p] = middle;
+    }
+  }
+}
+
 std::vector<Membrane> membranesBetween(const Octree& tree, const SurfaceModel& model,
                                        const std::vector<double>& clearance, const Csr<Id>& graph,
-                                       const std::vector<Side>& sides, Monitor& monitor) {
+                                       const std::vector<Side>& sides, const RimFilms* rims,
+                                       Monitor& monitor) {
   std::vector<Membrane> membranes;
   for (const std::vector<Face>& faces : connected(skinFaces(tree, graph, sides))) {
     Membrane start = triangulated(tree, faces);
+    const Id film = filmAlong(start, tree, rims);
+    if (film != kNone) {
+      membranes.push_back(asFilm(start, rims->films[film], tree, model));
+      continue;
+    }
     refineSmall(start);
     membranes.push_back(relaxed(start, tree, model, clearance, monitor));
   }

@@ -24,7 +24,7 @@ namespace pm {
 struct Membrane {
   std::vector<Vec3> points;                  ///< #P
   std::vector<std::array<Id, 3>> triangles;  ///< #T rows of points; normals point outside
-  std::vector<std::array<Id, 2>> leafPairs;  ///< #T free leaves (inside, outside) that met there
+  std::vector<std::array<Id, 2>> leafPairs;  ///< free leaves (inside, outside) that meet at the skin
   std::vector<std::uint8_t> onRim;           ///< #P 1 = the point lies on the geometry
   Vec3 bottleneck = Vec3::Zero();            ///< place of the largest clearance
   double width = 0;                          ///< twice that clearance, length
@@ -35,9 +35,17 @@ struct Membrane {
 /// Each triangle as four; edges that two triangles share stay shared.
 void quarter(std::vector<Vec3>& points, std::vector<std::array<Id, 3>>& triangles);
 
-/// Membranes between the sides, in the order of their first leaf.
+/// Like a soap film: each point goes to the middle of its neighbours; points of the rim likewise, then onto
+/// the closest geometry, but no farther than `slide` from where they met it first.
+void relax(Membrane& m, const SurfaceModel& model, double slide, Monitor& monitor);
+
+struct RimFilms;
+
+/// Membranes between the sides, in the order of their first leaf. One that follows a film of the rims (they
+/// may be null) is that film.
 std::vector<Membrane> membranesBetween(const Octree& tree, const SurfaceModel& model,
                                        const std::vector<double>& clearance, const Csr<Id>& graph,
-                                       const std::vector<Side>& sides, Monitor& monitor);
+                                       const std::vector<Side>& sides, const RimFilms* rims,
+                                       Monitor& monitor);
 
 }  // namespace pm

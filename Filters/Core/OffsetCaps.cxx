@@ -45,20 +45,46 @@ PolyMesh coarseMesh(const SurfaceModel& model, const OctreeDecomposeOptions& opt
   return mesh;
 }
 
+/// Points and triangles, and the membranes of the holes after them.
+std::unique_ptr<SurfaceModel> withMembranes(std::vector<Vec3> points,
+                                            std::vector<SurfaceModel::Triangle> triangles,
+                                            const std::vector<const Leak*>& holes) {
+  for (const Leak* hole : holes) {
+    const Id first = static_cast<Id>(points.size());
+    points.insert(points.end(), hole->membrane.points.begin(), hole->membrane.points.end());
+    for (const auto& t : hole->membrane.triangles)
+      triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  }
+  return std::make_unique<SurfaceModel>(points, triangles, std::vector<Id>(triangles.size(), 0),
+                                        std::vector<std::string>{"surface"});
+}
+
 // Cells larger than the widest hole seal for certain; where they are too large for the room, somewhat smaller
-// ones that happen to seal will do.
-PolyMesh coarsestThatWorks(const SurfaceModel& model, const OctreeDecomposeOptions& options, double size,
-                           const InsideTest& inside, Monitor& monitor, double& used) {
+// ones that happen to seal will do. No cells seal an opening as wide as its room: there the coarse mesh ends
+// at the membranes.
+PolyMesh coarsestThatWorks(const SurfaceModel& model, const OctreeDecomposeOptions& options,
+                           const OffsetOptions& wanted, const InsideTest& inside,
+                           const std::vector<const Leak*>& holes, Monitor& monitor, double& used) {
   for (double factor : {1.0, 0.8, 0.65, 0.5}) try {
-      used = factor * size;
-      return coarseMesh(model, options, used, inside, monitor);
+      used = factor * wanted.coarseSize;
+      if (used < model.bounds().size().maxCoeff()) return coarseMesh(model, options, used, inside, monitor);
     } catch (const RegionError&) {
       continue;
     }
-  throw RegionError(fmt::format(
-      "Cells of {:.4g}, which seal the widest hole, are too coarse for the room behind it: no cell "
-      "fits inside. Close holes coarse to fine, or give a smaller maximum width.",
-      size));
+  constexpr double coarser = 2;
+  used = std::min(used, coarser * wanted.finest);
+  try {
+    return coarseMesh(*withMembranes(model.points(), model.triangles(), holes), options, used, inside,
+                      monitor);
+  } catch (const RegionError& error) {
+    throw RegionError(
+        fmt::format("The holes cannot be covered from behind: neither cells of {:.4g}, which seal the "
+                    "widest, nor cells of "
+                    "{:.4g} up to the membranes mesh the room ({}). Close holes coarse to fine, or give a "
+                    "smaller maximum "
+                    "width.",
+                    wanted.coarseSize, used, error.what()));
+  }
 }
 
 /// The wall as triangles about the centres of its faces, normals leaving the mesh.
@@ -87,20 +113,12 @@ double longestEdge(const Caps& caps, const std::array<Id, 3>& t) {
 
 /// Only triangles within reach of a hole's membrane, and the points they use.
 Caps nearHoles(const Caps& caps, const std::vector<const Leak*>& holes, double reach) {
-  std::vector<Vec3> points;
-  std::vector<SurfaceModel::Triangle> triangles;
-  for (const Leak* hole : holes) {
-    const Id first = static_cast<Id>(points.size());
-    points.insert(points.end(), hole->membrane.points.begin(), hole->membrane.points.end());
-    for (const auto& t : hole->membrane.triangles)
-      triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
-  }
-  const SurfaceModel membranes(points, triangles, std::vector<Id>(triangles.size(), 0), {"membranes"});
+  const std::unique_ptr<SurfaceModel> membranes = withMembranes({}, {}, holes);
   std::vector<std::uint8_t> keep(caps.triangles.size());
   tbb::parallel_for(std::size_t(0), caps.triangles.size(), [&](std::size_t i) {
     const auto& t = caps.triangles[i];
     const Vec3 centre = (caps.points[t[0]] + caps.points[t[1]] + caps.points[t[2]]) / 3;
-    keep[i] = std::sqrt(membranes.closest(centre).distance2) <= reach + longestEdge(caps, t);
+    keep[i] = std::sqrt(membranes->closest(centre).distance2) <= reach + longestEdge(caps, t);
   });
   Caps out;
   std::vector<Id> number(caps.points.size(), kNone);
@@ -151,7 +169,7 @@ void offset(Caps& caps, const SurfaceModel& model, double distance, double over)
 Caps offsetCaps(const SurfaceModel& model, const OctreeDecomposeOptions& octree, const OffsetOptions& options,
                 const InsideTest& inside, const std::vector<const Leak*>& holes, Monitor& monitor) {
   double used = 0;
-  const PolyMesh mesh = coarsestThatWorks(model, octree, options.coarseSize, inside, monitor, used);
+  const PolyMesh mesh = coarsestThatWorks(model, octree, options, inside, holes, monitor, used);
   monitor.check(0.8, "caps");
   Caps caps = nearHoles(wallOf(mesh), holes, options.overlap);
   constexpr int mostSplits = 6;

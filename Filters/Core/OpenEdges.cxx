@@ -18,35 +18,77 @@ namespace {
 // within this part of the distance to the shared point.
 constexpr double kSharedPointSlope = 0.1;
 
-bool planesDiffer(const SurfaceModel& model, Id s, Id t, double degrees) {
-  const double angle = angleBetween(model.normal(s), model.normal(t));
-  return std::min(angle, 180 - angle) > degrees;
+/// What the triangles below a node of the model's tree have in common.
+struct NodeFacing {
+  Vec3 normal = Vec3::Zero();
+  double spread = 0;  // degrees between the normal's line and that of any of them, at most
+  Id patch = kNone;   // kNone = several
+};
+
+double anglesApart(const Vec3& u, const Vec3& v) {
+  const double angle = angleBetween(u, v);
+  return std::min(angle, 180 - angle);
 }
 
-/// Does geometry that the edge's triangle ought to be stitched to at an angle, or of another patch, lie
-/// beside it?
-bool isNearOther(const SurfaceModel& model, const OpenEdge& edge, const FeatureOptions& options) {
-  const Vec3& a = model.points()[edge.a];
-  const Vec3& b = model.points()[edge.b];
-  const Vec3 reach = Vec3::Constant(options.gapTolerance);
-  for (const double place : {1.0 / 6, 0.5, 5.0 / 6}) {
-    const Vec3 p = a + place * (b - a);
-    Box box;
-    box.add(p - reach);
-    box.add(p + reach);
-    for (Id t : model.trianglesNear(box)) {
-      if (t == edge.triangle) continue;
-      const bool otherPatch = options.interfaces && model.patchOf(t) != model.patchOf(edge.triangle);
-      if (!otherPatch && !planesDiffer(model, t, edge.triangle, options.sharpAngle)) continue;
-      double limit = options.gapTolerance;
-      for (Id corner : model.triangles()[t])
-        if (corner == edge.a || corner == edge.b)
-          limit = std::min(limit, kSharedPointSlope * (model.points()[corner] - p).norm());
-      if (model.closestOnTriangle(p, t).distance2 <= limit * limit) return true;
-    }
+/// Finds open edges beside which lies geometry that their triangle ought to be stitched to at an angle, or of
+/// another patch. Parts of the model that face alike are passed over as a whole, and one find is enough: a
+/// gap tolerance far above the size of the triangles costs no more than a small one.
+class StitchSearch {
+ public:
+  StitchSearch(const SurfaceModel& model, const FeatureOptions& options)
+      : model_(model), options_(options), bvh_(model.hierarchy()) {
+    const auto ofSlot = [&](Id slot) {
+      const Id t = bvh_.order()[slot];
+      return NodeFacing{model.normal(t), 0, options.interfaces ? model.patchOf(t) : 0};
+    };
+    facing_ = bvh_.nodeValues<NodeFacing>(ofSlot, [](NodeFacing& into, const NodeFacing& other) {
+      into.spread = std::max(into.spread, anglesApart(into.normal, other.normal) + other.spread);
+      if (into.patch != other.patch) into.patch = kNone;
+    });
   }
-  return false;
-}
+
+  bool isNearOther(const OpenEdge& edge) const {
+    const Vec3& a = model_.points()[edge.a];
+    const Vec3& b = model_.points()[edge.b];
+    for (const double place : {1.0 / 6, 0.5, 5.0 / 6})
+      if (isNearOther(edge, a + place * (b - a))) return true;
+    return false;
+  }
+
+ private:
+  bool isNearOther(const OpenEdge& edge, const Vec3& p) const {
+    constexpr double kSlack = 1 - 1e-12;
+    const double reach2 = options_.gapTolerance * options_.gapTolerance;
+    const Id patch = options_.interfaces ? model_.patchOf(edge.triangle) : 0;
+    const auto enter = [&](Id node, const Box& box) {
+      return kSlack * box.distance2(p) <= reach2 && !facesLike(facing_[node], edge.triangle, patch);
+    };
+    return bvh_.any(enter, [&](Id slot) { return isOther(bvh_.order()[slot], edge, p); });
+  }
+
+  bool facesLike(const NodeFacing& all, Id triangle, Id patch) const {
+    constexpr double kRounding = 1e-6;
+    if (all.patch != patch || all.spread + kRounding > options_.sharpAngle) return false;
+    return anglesApart(all.normal, model_.normal(triangle)) + all.spread + kRounding <= options_.sharpAngle;
+  }
+
+  bool isOther(Id t, const OpenEdge& edge, const Vec3& p) const {
+    if (t == edge.triangle) return false;
+    const bool otherPatch = options_.interfaces && model_.patchOf(t) != model_.patchOf(edge.triangle);
+    if (!otherPatch && anglesApart(model_.normal(t), model_.normal(edge.triangle)) <= options_.sharpAngle)
+      return false;
+    double limit = options_.gapTolerance;
+    for (Id corner : model_.triangles()[t])
+      if (corner == edge.a || corner == edge.b)
+        limit = std::min(limit, kSharedPointSlope * (model_.points()[corner] - p).norm());
+    return model_.closestOnTriangle(p, t).distance2 <= limit * limit;
+  }
+
+  const SurfaceModel& model_;
+  const FeatureOptions& options_;
+  const Bvh& bvh_;
+  std::vector<NodeFacing> facing_;
+};
 
 Box boxOf(const Vec3& p) {
   Box box;
@@ -67,9 +109,11 @@ class Welder {
     if (tolerance2_ > 0) {
       joinPoints(loose);
       unifyLinks(loose);
-      split(loose);
-      unifyLinks(loose);
       const LinkLookup firm(network_.points, network_.links);
+      const std::vector<Id> points = pointsOf(loose);
+      dropCovered(loose, firm);  // whole: where the tolerance is large the pieces would be far too many
+      split(loose, points);
+      unifyLinks(loose);
       dropCovered(loose, firm);
       splitFirm(loose, firm);
     }
@@ -142,9 +186,8 @@ class Welder {
     return best;
   }
 
-  /// Splits every loose link at the loose points within the tolerance of it.
-  void split(Links& loose) const {
-    const std::vector<Id> points = pointsOf(loose);
+  /// Splits every loose link at those of the points within the tolerance of it.
+  void split(Links& loose, const std::vector<Id>& points) const {
     const Bvh bvh = bvhOver(points);
     std::vector<std::vector<Id>> on(loose.size());
     tbb::parallel_for(std::size_t(0), loose.size(), [&](std::size_t i) {
@@ -171,7 +214,7 @@ class Welder {
       const Vec3& b = at(loose[i].b);
       covered[i] = 1;
       for (const double place : {0.0, 0.25, 0.5, 0.75, 1.0})
-        if (firm.nearest(a + place * (b - a), tolerance2_).link == kNone) covered[i] = 0;
+        if (covered[i] && !firm.reaches(a + place * (b - a), tolerance2_)) covered[i] = 0;
     });
     std::size_t kept = 0;
     for (std::size_t i = 0; i < loose.size(); ++i)
@@ -219,9 +262,11 @@ std::vector<OpenEdge> chooseOpenEdges(const SurfaceModel& model, std::vector<Ope
                                       const FeatureOptions& options) {
   if (options.openEdges) return open;
   if (!(options.gapTolerance > 0)) return {};
+  if (open.empty()) return open;
+  const StitchSearch search(model, options);
   std::vector<std::uint8_t> keep(open.size(), 0);
   tbb::parallel_for(std::size_t(0), open.size(),
-                    [&](std::size_t i) { keep[i] = isNearOther(model, open[i], options); });
+                    [&](std::size_t i) { keep[i] = search.isNearOther(open[i]); });
   std::size_t kept = 0;
   for (std::size_t i = 0; i < open.size(); ++i)
     if (keep[i]) open[kept++] = open[i];

@@ -231,6 +231,8 @@ SurfaceModel::SurfaceModel(const std::vector<Vec3>& points, const std::vector<Tr
 
 SurfaceModel::~SurfaceModel() = default;
 
+const Bvh& SurfaceModel::hierarchy() const { return tree_->bvh; }
+
 Closest SurfaceModel::closestOnTriangle(const Vec3& p, Id triangle) const {
   const Triangle t = sorted(triangles_[triangle]);
   return closestOnCorners(p, points_[t[0]], points_[t[1]], points_[t[2]], triangle);

@@ -15,6 +15,8 @@
 
 namespace pm {
 
+class Bvh;
+
 /// Answer of a closest-point query; triangle is kNone until something was found.
 struct Closest {
   Vec3 point = Vec3::Zero();
@@ -53,6 +55,8 @@ class SurfaceModel {
   Closest closestOnTriangle(const Vec3& p, Id triangle) const;
   /// Ids of the triangles whose boxes overlap the box, ascending.
   std::vector<Id> trianglesNear(const Box& box) const;
+  /// The tree over the triangles' boxes, for searches of one's own.
+  const Bvh& hierarchy() const;
 
  private:
   struct Hierarchy;  // bounding-volume tree over the triangles
