@@ -78,7 +78,7 @@ void packMembranes(const std::vector<Hole>& holes, vtkPolyData* surface) {
 }
 
 void packHoleTable(const std::vector<Hole>& holes, vtkTable* table) {
-  std::vector<int> row, closed;
+  std::vector<int> row, closed, wide;
   std::vector<double> width, sealing, area;
   vtkNew<vtkDoubleArray> place;
   place->SetName("Place");
@@ -90,6 +90,7 @@ void packHoleTable(const std::vector<Hole>& holes, vtkTable* table) {
     area.push_back(hole.leak.membrane.area);
     place->InsertNextTuple(hole.leak.bottleneck.data());
     closed.push_back(hole.closed ? 1 : 0);
+    wide.push_back(hole.leak.wide ? 1 : 0);
   }
   vtkFieldData* columns = table->GetRowData();
   addArray<vtkIntArray>(columns, "Leak", row);
@@ -98,6 +99,7 @@ void packHoleTable(const std::vector<Hole>& holes, vtkTable* table) {
   addArray<vtkDoubleArray>(columns, "Area", area);
   columns->AddArray(place);
   addArray<vtkIntArray>(columns, "Closed", closed);
+  addArray<vtkIntArray>(columns, "Wide", wide);
 }
 
 void packSurface(const SurfaceModel& model, vtkPolyData* surface) {

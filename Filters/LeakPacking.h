@@ -19,7 +19,8 @@ void packLeaks(const std::vector<Leak>& leaks, vtkPolyData* paths);
 /// The membranes. Cell arrays Leak int32, NarrowestWidth double, Closed uint8.
 void packMembranes(const std::vector<Hole>& holes, vtkPolyData* surface);
 
-/// One row a hole, widest first. Columns: Leak, Width, SealingSize, Area, Place (3), Closed (1 = closed now).
+/// One row a hole, widest first. Columns: Leak, Width, SealingSize, Area, Place (3), Closed (1 = closed now),
+/// Wide (1 = an opening about as wide as its room, which may be meant).
 void packHoleTable(const std::vector<Hole>& holes, vtkTable* table);
 
 /// Triangles with the cell array PatchId and the field array PatchNames, as surfaceFrom() reads them.

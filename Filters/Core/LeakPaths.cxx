@@ -118,6 +118,10 @@ Leak leakThrough(Membrane membrane, const Octree& tree, const SurfaceModel& mode
   return leak;
 }
 
+// Without a point, what lies behind a wide opening must fill this part of the geometry's box: a fillet that a
+// film cuts off is no room.
+constexpr double kWideRoom = 0.05;
+
 /// Leaves to flood from, and the rooms they stand for.
 struct Markers {
   std::vector<Marker> inside;
@@ -213,7 +217,9 @@ Markers chooseMarkers(const Octree& tree, const SurfaceModel& model, const std::
   if (noRoom) {
     m.rims = spanRims(model, tree.brick.edge(tree.brick.maxLevel), monitor);
     m.clearance = guidedClearance(tree, clearance, m.rims);
-    found = findPockets(tree, m.clearance, graph, m.outside, options.roominess, smallest);
+    const double substantial = given.empty() ? kWideRoom * model.bounds().size().prod() : 0;
+    found =
+        findPockets(tree, m.clearance, graph, m.outside, options.roominess, std::max(smallest, substantial));
   }
   if (given.empty()) addRooms(found, m);
   for (Id leaf : given) addRoomOf(leaf, found, tree, graph, m);

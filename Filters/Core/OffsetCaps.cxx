@@ -59,34 +59,6 @@ std::unique_ptr<SurfaceModel> withMembranes(std::vector<Vec3> points,
                                         std::vector<std::string>{"surface"});
 }
 
-// Cells larger than the widest hole seal for certain; where they are too large for the room, somewhat smaller
-// ones that happen to seal will do. No cells seal an opening as wide as its room: there the coarse mesh ends
-// at the membranes.
-PolyMesh coarsestThatWorks(const SurfaceModel& model, const OctreeDecomposeOptions& options,
-                           const OffsetOptions& wanted, const InsideTest& inside,
-                           const std::vector<const Leak*>& holes, Monitor& monitor, double& used) {
-  for (double factor : {1.0, 0.8, 0.65, 0.5}) try {
-      used = factor * wanted.coarseSize;
-      if (used < model.bounds().size().maxCoeff()) return coarseMesh(model, options, used, inside, monitor);
-    } catch (const RegionError&) {
-      continue;
-    }
-  constexpr double coarser = 2;
-  used = std::min(used, coarser * wanted.finest);
-  try {
-    return coarseMesh(*withMembranes(model.points(), model.triangles(), holes), options, used, inside,
-                      monitor);
-  } catch (const RegionError& error) {
-    throw RegionError(
-        fmt::format("The holes cannot be covered from behind: neither cells of {:.4g}, which seal the "
-                    "widest, nor cells of "
-                    "{:.4g} up to the membranes mesh the room ({}). Close holes coarse to fine, or give a "
-                    "smaller maximum "
-                    "width.",
-                    wanted.coarseSize, used, error.what()));
-  }
-}
-
 /// The wall as triangles about the centres of its faces, normals leaving the mesh.
 Caps wallOf(const PolyMesh& mesh) {
   Caps caps;
@@ -138,6 +110,60 @@ Caps nearHoles(const Caps& caps, const std::vector<const Leak*>& holes, double r
   return out;
 }
 
+/// What covers the holes, in triangles as fine as asked for.
+Caps fineNearHoles(const Caps& wall, const std::vector<const Leak*>& holes, const OffsetOptions& options) {
+  constexpr int mostSplits = 6;
+  Caps caps = nearHoles(wall, holes, options.overlap);
+  for (int split = 0; split < mostSplits; ++split) {
+    double longest = 0;
+    for (const auto& t : caps.triangles) longest = std::max(longest, longestEdge(caps, t));
+    if (longest <= options.finest) break;
+    quarter(caps.points, caps.triangles);
+    caps = nearHoles(caps, holes, options.overlap);
+  }
+  return caps;
+}
+
+// A coarse room may be no more than a cell far from the hole.
+bool coversAll(const Caps& caps, const std::vector<const Leak*>& holes, double reach) {
+  return std::none_of(holes.begin(), holes.end(),
+                      [&](const Leak* hole) { return nearHoles(caps, {hole}, reach).triangles.empty(); });
+}
+
+// Cells larger than the widest hole seal for certain; where they are too large for the room, somewhat smaller
+// ones that happen to seal will do. No cells seal an opening as wide as its room: there the coarse mesh ends
+// at the membranes.
+Caps coarsestThatWorks(const SurfaceModel& model, const OctreeDecomposeOptions& options,
+                       const OffsetOptions& wanted, const InsideTest& inside,
+                       const std::vector<const Leak*>& holes, Monitor& monitor) {
+  const auto made = [&](const SurfaceModel& surface, double size) {
+    Caps caps = fineNearHoles(wallOf(coarseMesh(surface, options, size, inside, monitor)), holes, wanted);
+    caps.coarseSize = size;
+    if (!coversAll(caps, holes, wanted.overlap)) throw RegionError("the cells do not reach every hole");
+    return caps;
+  };
+  double size = wanted.coarseSize;
+  for (double factor : {1.0, 0.8, 0.65, 0.5}) try {
+      size = factor * wanted.coarseSize;
+      if (size < model.bounds().size().maxCoeff()) return made(model, size);
+    } catch (const RegionError&) {
+      continue;
+    }
+  constexpr double coarser = 2;
+  size = std::min(size, coarser * wanted.finest);
+  try {
+    return made(*withMembranes(model.points(), model.triangles(), holes), size);
+  } catch (const RegionError& error) {
+    throw RegionError(
+        fmt::format("The holes cannot be covered from behind: neither cells of {:.4g}, which seal the "
+                    "widest, nor cells of "
+                    "{:.4g} up to the membranes mesh the room ({}). Close holes coarse to fine, or give a "
+                    "smaller maximum "
+                    "width.",
+                    wanted.coarseSize, size, error.what()));
+  }
+}
+
 std::vector<Vec3> normalsOf(const Caps& caps) {
   std::vector<Vec3> normals(caps.points.size(), Vec3::Zero());
   for (const auto& t : caps.triangles) {
@@ -149,18 +175,21 @@ std::vector<Vec3> normalsOf(const Caps& caps) {
 }
 
 // A point near the geometry goes to its far side, measured from the closest triangle; one over a hole moves
-// along the wall's own normal, so that the cap does not fold onto the rim.
+// along the wall's own normal, so that the cap does not fold onto the rim, and the less the farther it is
+// from the rim: no cell has to be kept from passing there, and a room behind a wide opening keeps its volume.
 void offset(Caps& caps, const SurfaceModel& model, double distance, double over) {
+  constexpr double fades = 2;  // times `over`
   const std::vector<Vec3> normals = normalsOf(caps);
   tbb::parallel_for(std::size_t(0), caps.points.size(), [&](std::size_t i) {
     const Closest c = model.closest(caps.points[i]);
+    const double beyond = std::sqrt(c.distance2) - over;
     Vec3 n = normals[i];
-    if (c.distance2 <= over * over) {
+    if (beyond <= 0) {
       const Vec3& own = model.normal(c.triangle);
       caps.points[i] = c.point;
       n = own.dot(n) < 0 ? Vec3(-own) : own;
     }
-    caps.points[i] += distance * n;
+    caps.points[i] += distance * std::clamp(1 - beyond / (fades * over), 0.0, 1.0) * n;
   });
 }
 
@@ -168,20 +197,9 @@ void offset(Caps& caps, const SurfaceModel& model, double distance, double over)
 
 Caps offsetCaps(const SurfaceModel& model, const OctreeDecomposeOptions& octree, const OffsetOptions& options,
                 const InsideTest& inside, const std::vector<const Leak*>& holes, Monitor& monitor) {
-  double used = 0;
-  const PolyMesh mesh = coarsestThatWorks(model, octree, options, inside, holes, monitor, used);
+  Caps caps = coarsestThatWorks(model, octree, options, inside, holes, monitor);
   monitor.check(0.8, "caps");
-  Caps caps = nearHoles(wallOf(mesh), holes, options.overlap);
-  constexpr int mostSplits = 6;
-  for (int split = 0; split < mostSplits; ++split) {
-    double longest = 0;
-    for (const auto& t : caps.triangles) longest = std::max(longest, longestEdge(caps, t));
-    if (longest <= options.finest) break;
-    quarter(caps.points, caps.triangles);
-    caps = nearHoles(caps, holes, options.overlap);
-  }
   offset(caps, model, options.offset, options.finest);
-  caps.coarseSize = used;
   return caps;
 }
 

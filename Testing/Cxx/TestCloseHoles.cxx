@@ -157,16 +157,59 @@ TEST(LeakPaths, GivenPoints) {
   EXPECT_THROW(search(*model, kCell, options), InputError) << "on both sides";
 }
 
-TEST(LeakPaths, AnOpeningAsWideAsTheRoomNeedsAPoint) {
-  Soup open = cube(4, true);
+/// A unit cube without the side x = 0.
+Soup openCube() {
+  const Soup whole = cube(4, true);
   Soup soup;
-  soup.names = open.names;
-  for (std::size_t t = 0; t < open.triangles.size(); ++t)
-    if (open.patches[t] != 0)
-      soup.add(open.points[open.triangles[t][0]], open.points[open.triangles[t][1]],
-               open.points[open.triangles[t][2]], open.patches[t]);
-  const auto model = soup.model();
+  soup.names = whole.names;
+  for (std::size_t t = 0; t < whole.triangles.size(); ++t) {
+    const auto& [a, b, c] = whole.triangles[t];
+    if (whole.points[a][0] + whole.points[b][0] + whole.points[c][0] > 0)
+      soup.add(whole.points[a], whole.points[b], whole.points[c], whole.patches[t]);
+  }
+  return soup;
+}
+
+TEST(LeakPaths, AnOpeningAsWideAsTheRoomNeedsAPoint) {
+  const auto model = openCube().model();
   EXPECT_TRUE(search(*model).leaks.empty()) << "a recess is no room";
+  LeakOptions options;
+  for (const Vec3& p : {Vec3(0.5, 0.5, 0.5), Vec3(0.07, 0.5, 0.5), Vec3(0.9, 0.1, 0.9)}) {
+    options.insidePoints = {p};
+    const LeakSearch found = search(*model, kCell, options);
+    ASSERT_EQ(found.leaks.size(), 1u);
+    const Leak& leak = found.leaks[0];
+    EXPECT_FALSE(leak.wide) << "the point says that it is a leak";
+    EXPECT_NEAR(leak.width, 1, 0.01);
+    EXPECT_NEAR(leak.membrane.area, 1, 1e-9);
+    for (const Vec3& q : leak.membrane.points) EXPECT_NEAR(q[0], 0, 1e-12) << "in the opening";
+    EXPECT_LT((leak.bottleneck - Vec3(0, 0.5, 0.5)).norm(), kCell);
+    expectClearOfGeometry(leak, *model);
+  }
+}
+
+TEST(CloseHoles, AWideOpeningIsShownAndClosedOnlyForAPoint) {
+  const auto model = openCube().model();
+  Monitor monitor;
+  CloseHolesReport report;
+  CloseHolesOptions options;
+  options.method = HoleMethod::ShowOnly;
+  closeHoles(*model, cells(kCell), options, monitor, &report);
+  ASSERT_EQ(report.holes.size(), 1u);
+  EXPECT_TRUE(report.holes[0].leak.wide);
+  EXPECT_TRUE(report.tight) << "it may be meant to be there";
+  for (HoleMethod method : {HoleMethod::CoarseToFine, HoleMethod::Offset}) {
+    options = {};
+    options.method = method;
+    EXPECT_EQ(closeHoles(*model, cells(kCell), options, monitor, &report)->triangleCount(),
+              model->triangleCount());
+    options.search.insidePoints = {Vec3(0.6, 0.4, 0.5)};
+    const auto closed = closeHoles(*model, cells(kCell), options, monitor, &report);
+    ASSERT_EQ(report.holes.size(), 1u);
+    EXPECT_TRUE(report.holes[0].closed && report.tight);
+    EXPECT_NEAR(volumeInside(*closed, cells(kCell)), volumeInside(*cube(4, true).model(), cells(kCell)),
+                0.08);
+  }
 }
 
 TEST(LeakPaths, SameForAnyNumberOfThreads) {

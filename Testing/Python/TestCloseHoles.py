@@ -3,7 +3,7 @@ import math
 import unittest
 
 import numpy as np
-from support import Messages, arrays, chain, pm, sphere, strings
+from support import Messages, arrays, box, chain, pm, sphere, strings
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkPolyData
 from vtkmodules.vtkCommonCore import vtkIdList
@@ -127,6 +127,28 @@ class TestCloseHoles(unittest.TestCase):
         self.assertIn("lies outside the domain", messages.errors[0])
         self.assertEqual(holes.GetOutputDataObject(0).GetNumberOfCells(), 0)
         self.assertEqual(holes.GetOutputDataObject(3).GetNumberOfRows(), 0)
+
+    def test_an_opening_as_wide_as_the_room_is_shown_and_closed_for_a_point(self):
+        cube = box()
+        opened = vtkPolyData()
+        opened.SetPoints(cube.GetPoints())
+        opened.Allocate(5)
+        ids = vtkIdList()
+        for side in range(1, 6):  # all but x = -0.5
+            cube.GetCellPoints(side, ids)
+            opened.InsertNextCell(cube.GetCellType(side), ids)
+        columns = {}
+        for method, points in ((0, []), (1, []), (1, [(0.1, 0.2, 0)])):
+            holes = close_holes(opened, Method=method)
+            for point in points:
+                holes.AddInsidePoint(*point)
+            holes.Update()
+            table = holes.GetOutputDataObject(3)
+            columns[method, len(points)] = [[table.GetColumnByName(name).GetValue(row) for name in ("Wide", "Closed")]
+                                            for row in range(table.GetNumberOfRows())]
+        self.assertEqual(columns, {(0, 0): [[1, 0]], (1, 0): [], (1, 1): [[0, 1]]})
+        self.assertEqual(table.GetColumnByName("Place").GetTuple3(0)[0], -0.5)
+        self.assertAlmostEqual(table.GetColumnByName("Area").GetValue(0), 1, delta=1e-6)
 
     def test_wide_holes_stay_open(self):
         holes = close_holes(self.leaky, MaximumWidth=0.1)
