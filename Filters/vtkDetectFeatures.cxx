@@ -90,7 +90,6 @@ class CurvePacker {
 void vtkDetectFeatures::Run(vtkInformationVector** inputs, vtkUnstructuredGrid*, vtkPolyData*,
                             pm::Monitor& monitor) {
   const auto model = this->Surface(inputs);
-  monitor.check(0.1, "feature detection");
   pm::FeatureOptions options;
   options.sharpAngle = this->SharpAngle;
   options.cornerAngle = this->CornerAngle;
@@ -99,7 +98,8 @@ void vtkDetectFeatures::Run(vtkInformationVector** inputs, vtkUnstructuredGrid*,
   options.intersections = this->Intersections;
   options.gapTolerance = this->GapTolerance;
   options.shortestCurve = this->ShortestCurve;
-  const pm::FeatureGraph graph = pm::detectFeatures(*model, options);
+  pm::PartMonitor detection(monitor, 0.1, 0.9);
+  const pm::FeatureGraph graph = pm::detectFeatures(*model, options, &detection);
   monitor.check(0.9, "packing curves");
   CurvePacker().Pack(graph, vtkPolyData::SafeDownCast(this->GetOutputDataObject(0)));
 }

@@ -39,8 +39,8 @@ class Bvh {
   template <class Visit>
   void overlapping(const Box& box, const Visit& visit) const;
 
-  /// Visits the slots of all nodes that enter(node, box) lets the search into, until visit(slot) returns true;
-  /// says whether it did.
+  /// Visits the slots of all nodes that enter(node, box) lets the search into, until visit(slot) returns
+  /// true; says whether it did.
   template <class Enter, class Visit>
   bool any(const Enter& enter, const Visit& visit) const;
 

@@ -11,13 +11,15 @@ namespace {
 
 constexpr double kDegree = 3.14159265358979323846 / 180;
 
-FeatureGraph detect(const SurfaceModel& model, const OctreeDecomposeOptions& o, double finest) {
+FeatureGraph detect(const SurfaceModel& model, const OctreeDecomposeOptions& o, double finest,
+                    Monitor& monitor) {
   if (!o.refineEdges) return {{}, {}, {}};
   FeatureOptions f;
   f.sharpAngle = o.sharpAngle;
   f.gapTolerance = 0.5 * finest;
   f.openEdges = o.refineOpen == OpenEdgeRefinement::All;
-  return detectFeatures(model, f);
+  PartMonitor part(monitor, 0, 0);  // localisation goes on from there
+  return detectFeatures(model, f, &part);
 }
 
 Box grown(Box box, double by) {
@@ -46,8 +48,9 @@ bool clip(const Box& box, const FeatureSegment& s, Vec3& a, Vec3& b) {
 
 }  // namespace
 
-FeatureDemand::FeatureDemand(const SurfaceModel& model, const OctreeDecomposeOptions& options, double finest)
-    : options_(options), finest_(finest), graph_(detect(model, options, finest)) {
+FeatureDemand::FeatureDemand(const SurfaceModel& model, const OctreeDecomposeOptions& options, double finest,
+                             Monitor& monitor)
+    : options_(options), finest_(finest), graph_(detect(model, options, finest, monitor)) {
   constexpr std::uint8_t kSwitched = kInterfaceEdge | kOpenEdge | kNonManifoldEdge;
   if (options.refineSharp) kinds_ = static_cast<std::uint8_t>(~kSwitched);
   if (options.refineInterfaces) kinds_ |= kInterfaceEdge;

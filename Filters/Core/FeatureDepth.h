@@ -21,7 +21,8 @@ class FeatureDemand {
   static constexpr double kMostSag = 1. / 20;  ///< of the finest cell's edge
 
   /// Finds the model's critical edges; keeps a reference to the options.
-  FeatureDemand(const SurfaceModel& model, const OctreeDecomposeOptions& options, double finest);
+  FeatureDemand(const SurfaceModel& model, const OctreeDecomposeOptions& options, double finest,
+                Monitor& monitor);
 
   enum class Answer {
     None,   ///< no feature near

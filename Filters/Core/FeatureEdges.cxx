@@ -197,17 +197,26 @@ void checkOptions(const FeatureOptions& options) {
 
 }  // namespace
 
-FeatureGraph detectFeatures(const SurfaceModel& model, const FeatureOptions& options) {
+FeatureGraph detectFeatures(const SurfaceModel& model, const FeatureOptions& options, Monitor* monitor) {
+  Monitor unwatched;
+  Monitor& watch = monitor != nullptr ? *monitor : unwatched;
   checkOptions(options);
+  watch.check(0, "sharp edges");
   FeatureNetwork network;
   network.points = model.points();
   std::vector<OpenEdge> open;
   EdgeClassifier(model, options).run(network, open);
+  watch.check(0.1, "open edges");
   open = chooseOpenEdges(model, std::move(open), options);
   const double trusted = kTrustedHeight * model.bounds().diagonal();
-  if (options.intersections)
-    addIntersections(model, options, std::max(trusted, options.gapTolerance), trusted, network, open);
+  if (options.intersections) {
+    PartMonitor part(watch, 0.2, 0.8);
+    const IntersectionTolerances tolerances{std::max(trusted, options.gapTolerance), trusted};
+    addIntersections(model, options, tolerances, network, open, part);
+  }
+  watch.check(0.8, "welding");
   addOpenEdges(network, open, options.gapTolerance);
+  watch.check(0.9, "curves");
   const double reach = std::max(trusted, 4 * options.gapTolerance);
   return traceCurves(network, options, reach);
 }

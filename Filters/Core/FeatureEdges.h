@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "Monitor.h"
 #include "SurfaceModel.h"
 
 namespace pm {
@@ -78,6 +79,8 @@ class FeatureGraph {
   std::unique_ptr<Index> index_;
 };
 
-FeatureGraph detectFeatures(const SurfaceModel& model, const FeatureOptions& options);
+/// The monitor, if any, hears of the passes from 0 to 1 and can stop them.
+FeatureGraph detectFeatures(const SurfaceModel& model, const FeatureOptions& options,
+                            Monitor* monitor = nullptr);
 
 }  // namespace pm

@@ -18,17 +18,18 @@ using Links = FeatureNetwork::Links;
 
 class IntersectionLinks {
  public:
-  IntersectionLinks(const SurfaceModel& model, const FeatureOptions& options, double tolerance,
-                    double trusted, FeatureNetwork& network)
+  IntersectionLinks(const SurfaceModel& model, const FeatureOptions& options,
+                    const IntersectionTolerances& tolerances, FeatureNetwork& network)
       : model_(model),
         options_(options),
-        tolerance2_(tolerance * tolerance),
-        trusted_(trusted),
+        tolerance2_(tolerances.joining * tolerances.joining),
+        trusted_(tolerances.trusted),
         network_(network) {}
 
-  void run(std::vector<OpenEdge>& open) {
-    chooseLinks();
+  void run(std::vector<OpenEdge>& open, Monitor& monitor) {
+    chooseLinks(monitor);
     if (links_.empty()) return;
+    monitor.check(1, "intersection curves");
     dropCovered();
     dropShort();
     joinToLinks();
@@ -53,8 +54,8 @@ class IntersectionLinks {
   }
 
   /// Sharp segments of trusted triangles, and those of slivers that join two of them.
-  void chooseLinks() {
-    const std::shared_ptr<const SelfIntersections> known = knownIntersections(model_);
+  void chooseLinks(Monitor& monitor) {
+    const std::shared_ptr<const SelfIntersections> known = knownIntersections(model_, monitor);
     const SelfIntersections& cuts = *known;
     std::vector<std::uint8_t> trusted(cuts.segments.size());
     tbb::parallel_for(std::size_t(0), cuts.segments.size(), [&](std::size_t i) {
@@ -198,9 +199,10 @@ class IntersectionLinks {
 
 }  // namespace
 
-void addIntersections(const SurfaceModel& model, const FeatureOptions& options, double tolerance,
-                      double trusted, FeatureNetwork& network, std::vector<OpenEdge>& open) {
-  IntersectionLinks(model, options, tolerance, trusted, network).run(open);
+void addIntersections(const SurfaceModel& model, const FeatureOptions& options,
+                      const IntersectionTolerances& tolerances, FeatureNetwork& network,
+                      std::vector<OpenEdge>& open, Monitor& monitor) {
+  IntersectionLinks(model, options, tolerances, network).run(open, monitor);
 }
 
 }  // namespace pm

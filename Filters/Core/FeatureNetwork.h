@@ -69,12 +69,17 @@ struct OpenEdge {
 std::vector<OpenEdge> chooseOpenEdges(const SurfaceModel& model, std::vector<OpenEdge> open,
                                       const FeatureOptions& options);
 
+struct IntersectionTolerances {
+  double joining;  // curves within it of links are those links, ends within it join them
+  double trusted;  // triangles lower than this have no plane: they only carry on curves of their neighbours
+};
+
 /// Adds the curves along which triangles in planes at more than the sharp angle cut each other. Pieces that
 /// run along links already there within the tolerance, and curves shorter than it, say nothing and are left
 /// out; ends within the tolerance of a link join it. Links and open edges are split where curves meet them.
-/// Triangles lower than `trusted` have no plane: they only carry on curves of their neighbours.
-void addIntersections(const SurfaceModel& model, const FeatureOptions& options, double tolerance,
-                      double trusted, FeatureNetwork& network, std::vector<OpenEdge>& open);
+void addIntersections(const SurfaceModel& model, const FeatureOptions& options,
+                      const IntersectionTolerances& tolerances, FeatureNetwork& network,
+                      std::vector<OpenEdge>& open, Monitor& monitor);
 
 /// Adds open edges to the network. Borders within the tolerance of each other or of links already there are
 /// welded into one line: points join points, then points split the links they lie on, then equal links are

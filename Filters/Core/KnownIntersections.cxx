@@ -18,15 +18,14 @@ struct Known {
 
 }  // namespace
 
-std::shared_ptr<const SelfIntersections> knownIntersections(const SurfaceModel& model) {
+std::shared_ptr<const SelfIntersections> knownIntersections(const SurfaceModel& model, Monitor& monitor) {
   static std::mutex mutex;
   static Known last;
   {
     const std::lock_guard<std::mutex> lock(mutex);
     if (last.isOf(model)) return last.found;
   }
-  Monitor unwatched;
-  auto found = std::make_shared<const SelfIntersections>(selfIntersections(model, unwatched));
+  auto found = std::make_shared<const SelfIntersections>(selfIntersections(model, monitor));
   const std::lock_guard<std::mutex> lock(mutex);
   last = {model.contentHash(), model.triangleCount(), found};
   return found;

@@ -24,4 +24,19 @@ class Monitor {
   }
 };
 
+/// A part of a stage: its progress from 0 to 1 is that of the whole from `from` to `to`.
+class PartMonitor : public Monitor {
+ public:
+  PartMonitor(Monitor& whole, double from, double to) : whole_(whole), from_(from), to_(to) {}
+  void progress(double fraction, const std::string& pass) override {
+    whole_.progress(from_ + fraction * (to_ - from_), pass);
+  }
+  bool aborted() const override { return whole_.aborted(); }
+  void warning(const std::string& sentence) override { whole_.warning(sentence); }
+
+ private:
+  Monitor& whole_;
+  const double from_, to_;
+};
+
 }  // namespace pm

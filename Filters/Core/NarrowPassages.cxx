@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "Bvh.h"
 #include "TriangleBox.h"
 
 namespace pm {
@@ -25,42 +26,48 @@ struct Hit {
   Id triangle = kNone;
 };
 
-/// Segments against the triangles in the leaves they pass.
+/// Segments against the triangles.
 class LineOfSight {
  public:
-  LineOfSight(const Octree& tree, const SurfaceModel& model) : tree_(tree), model_(model) {}
+  explicit LineOfSight(const SurfaceModel& model) : model_(model), bvh_(model.hierarchy()) {}
 
-  /// First triangle on the segment p-q beyond `from` (a part of it); its rim counts.
+  /// First triangle on the segment p-q beyond `from` (a part of it); its rim counts. Ties go to the smaller
+  /// id.
   Hit firstHit(const Vec3& p, const Vec3& q, double from) const {
-    constexpr double kStep = 1e-6;  // of a leaf, to be clearly in the next one
-    const Vec3 d = q - p;
     Hit hit;
-    for (double at = 0; at <= 1;) {
-      const Id leaf = tree_.locate(p + at * d);
-      if (leaf == kNone) break;
-      for (Id t : tree_.triangles[leaf]) test(t, p, d, from, hit);
-      double end = 2;
-      const Box box = tree_.box(leaf);
-      for (int a = 0; a < 3; ++a) {
-        const double leaving = d[a] != 0 ? ((d[a] > 0 ? box.hi[a] : box.lo[a]) - p[a]) / d[a] : 2;
-        if (leaving > at)
-          end = std::min(end, leaving);  // rounding may put it behind, on a segment along a face
-      }
-      if (hit.at <= end) break;
-      at = end + kStep * tree_.brick.edge(tree_.levels[leaf]) / d.norm();
-    }
+    search(p, q, from, hit, false);
     return hit;
   }
-  bool clear(const Vec3& p, const Vec3& q) const { return firstHit(p, q, 0).triangle == kNone; }
+  bool clear(const Vec3& p, const Vec3& q) const {
+    Hit hit;
+    return !search(p, q, 0, hit, true);
+  }
 
  private:
+  /// Keeps the first hit, or ends with any.
+  bool search(const Vec3& p, const Vec3& q, double from, Hit& hit, bool anyWillDo) const {
+    constexpr double kLevel = 1e-200;  // stands for no component along an axis
+    constexpr double kRounding = 1e-9;
+    const Vec3 d = q - p;
+    const Eigen::Array3d parts = (d.array().abs() > kLevel).select(d.array(), kLevel).inverse();
+    const auto enter = [&](Id, const Box& box) {
+      const Eigen::Array3d toLo = (box.lo - p).array() * parts, toHi = (box.hi - p).array() * parts;
+      const double in = toLo.min(toHi).maxCoeff() - kRounding, out = toLo.max(toHi).minCoeff() + kRounding;
+      return in <= out && out >= from && in <= std::min(hit.at, 1.0);
+    };
+    return bvh_.any(enter, [&](Id slot) {
+      test(bvh_.order()[slot], p, d, from, hit);
+      return anyWillDo && hit.triangle != kNone;
+    });
+  }
+
   void test(Id t, const Vec3& p, const Vec3& d, double from, Hit& hit) const {
     const Vec3& a = model_.corner(t, 0);
     const Vec3& normal = model_.normal(t);
     const double slope = d.dot(normal);
     if (std::abs(slope) <= 1e-12 * d.norm()) return;  // seen edge-on
     const double at = (a - p).dot(normal) / slope;
-    if (at < from || at > 1 || at >= hit.at) return;
+    if (at < from || at > 1 || at > hit.at || (at == hit.at && t > hit.triangle)) return;
     const Vec3 ab = model_.corner(t, 1) - a, ac = model_.corner(t, 2) - a, n = ab.cross(ac),
                e = p + at * d - a;
     const double area = n.squaredNorm(), v = e.cross(ac).dot(n) / area, w = ab.cross(e).dot(n) / area;
@@ -68,8 +75,8 @@ class LineOfSight {
     if (v >= kRim && w >= kRim && v + w <= 1 - kRim) hit = {at, t};
   }
 
-  const Octree& tree_;
   const SurfaceModel& model_;
+  const Bvh& bvh_;
 };
 
 /// Calls body(leaf, direction) for leaves up to `rings` (1 or 2) times the leaf's own size away.
@@ -112,7 +119,7 @@ class NarrowSearch {
                const Regions& regions)
       : tree_(tree),
         model_(model),
-        sight_(tree, model),
+        sight_(model),
         painted_(painted),
         regions_(regions),
         first_(tree.size(), kNone),

@@ -63,7 +63,7 @@ Octree decompose(const SurfaceModel& model, const OctreeDecomposeOptions& option
   checkOptions(model, options);
   monitor.check(0, "localisation");
   OctreeBuilder builder(chooseBrick(model, options), model);
-  const RefinementCriteria criteria(model, builder.brick(), options);
+  const RefinementCriteria criteria(model, builder.brick(), options, monitor);
   OctreeBudget budget(options, builder.brick());
   refineByCriteria(builder, criteria, budget, monitor);
   for (;;) {

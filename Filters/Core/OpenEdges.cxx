@@ -111,7 +111,7 @@ class Welder {
       unifyLinks(loose);
       const LinkLookup firm(network_.points, network_.links);
       const std::vector<Id> points = pointsOf(loose);
-      dropCovered(loose, firm);  // whole: where the tolerance is large the pieces would be far too many
+      dropShort(loose);
       split(loose, points);
       unifyLinks(loose);
       dropCovered(loose, firm);
@@ -204,6 +204,15 @@ class Welder {
     for (std::size_t i = 0; i < loose.size(); ++i)
       for (Id p : on[i]) splits.push_back({static_cast<Id>(i), p});
     splitLinks(network_.points, loose, std::move(splits));
+  }
+
+  /// Short links between points of links already there run along those for certain. Where the tolerance is
+  /// large there are very many, and their pieces would be far more.
+  void dropShort(Links& loose) const {
+    const auto isShort = [&](const FeatureNetwork::Link& l) {
+      return firm_[l.a] && firm_[l.b] && (at(l.b) - at(l.a)).squaredNorm() <= 4 * tolerance2_;
+    };
+    loose.erase(std::remove_if(loose.begin(), loose.end(), isShort), loose.end());
   }
 
   /// Loose links that run along links already there say nothing new.

@@ -33,11 +33,11 @@ struct RefinementCriteria::Sample {
 };
 
 RefinementCriteria::RefinementCriteria(const SurfaceModel& model, const Brick& brick,
-                                       const OctreeDecomposeOptions& options)
+                                       const OctreeDecomposeOptions& options, Monitor& monitor)
     : model_(model),
       options_(options),
       brick_(brick),
-      features_(model, options, brick.edge(brick.maxLevel)),
+      features_(model, options, brick.edge(brick.maxLevel), monitor),
       sizes_(model, options),
       probe_(model, brick, options),
       patchSize_(model.patchNames().size(), 0.0),

@@ -21,7 +21,8 @@ namespace pm {
 
 class RefinementCriteria {
  public:
-  RefinementCriteria(const SurfaceModel& model, const Brick& brick, const OctreeDecomposeOptions& options);
+  RefinementCriteria(const SurfaceModel& model, const Brick& brick, const OctreeDecomposeOptions& options,
+                     Monitor& monitor);
 
   struct Choice {
     std::vector<Id> leaves;           ///< to be split, ascending

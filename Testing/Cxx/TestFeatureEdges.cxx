@@ -415,6 +415,31 @@ TEST(FeatureEdges, ShortCurvesThatJoinNothingAreDropped) {
   EXPECT_EQ(detect(soup, options).curves().size(), 12u);
 }
 
+TEST(FeatureEdges, DetectionStopsOnRequest) {
+  struct Stop : Monitor {
+    explicit Stop(std::string in) : pass(std::move(in)) {}
+    void progress(double fraction, const std::string& now) override {
+      EXPECT_GE(fraction, last);
+      EXPECT_LE(fraction, 1);
+      last = fraction;
+      stopped = stopped || now == pass;
+    }
+    bool aborted() const override { return stopped; }
+    std::string pass;
+    double last = 0;
+    bool stopped = false;
+  };
+  FeatureOptions options;
+  options.gapTolerance = 0.1;
+  const auto model = unstitchedCube(0.01).model();
+  for (const char* pass : {"sharp edges", "open edges", "self-intersections", "welding", "curves"}) {
+    Stop stop(pass);
+    EXPECT_THROW(detectFeatures(*model, options, &stop), AbortError) << pass;
+  }
+  Stop never("");
+  expectEqual(detectFeatures(*model, options, &never), detectFeatures(*model, options));
+}
+
 TEST(FeatureEdges, RefusesOptionsThatMeanNothing) {
   for (double bad : {-1.0, std::nan("")}) {
     for (double FeatureOptions::*option : {&FeatureOptions::sharpAngle, &FeatureOptions::cornerAngle,

@@ -292,13 +292,56 @@ TEST(SelfIntersections, SameBitsForAnyNumberOfThreads) {
   }
 }
 
+/// Triangles around one point; apex at height h above their rim.
+Soup fan(int count, double h) {
+  Soup soup;
+  const auto rim = [&](int i) {
+    const double angle = 2 * 3.14159265358979323846 * (i % count) / count;
+    return Vec3(std::cos(angle), std::sin(angle), 0);
+  };
+  for (int i = 0; i < count; ++i) soup.add({0, 0, h}, rim(i), rim(i + 1));
+  return soup;
+}
+
+TEST(SelfIntersections, LargeFansAndConesHaveNone) {
+  for (double h : {0.0, 0.5, 20.0}) EXPECT_TRUE(search(fan(50000, h)).pairs.empty());
+  // A plate through a cone of slope 1 meets the triangles on its line alone.
+  Soup cut = fan(50000, 1);
+  cut.add({0.25, -1e-5, 0.1}, {0.25, 1e-5, 0.1}, {0.9, 0, 0.8});
+  const SelfIntersections found = search(cut);
+  EXPECT_FALSE(found.pairs.empty());
+  EXPECT_LT(found.pairs.size(), 10u);
+  for (const TrianglePair& pair : found.pairs) EXPECT_EQ(pair.b, 50000);
+}
+
+TEST(SelfIntersections, TrianglesAroundAPointEqualAllPairs) {
+  // Folded and crossing fans around two points, some in one plane, among others.
+  std::mt19937_64 generator(5);
+  Soup soup = testing::randomSoup(80, 0.5, 6, 5);
+  for (int i = 0; i < 300; ++i) {
+    Vec3 p = randomPoint(generator, -1, 1), q = p + randomPoint(generator, -0.3, 0.3);
+    if (i % 3 == 0) p[2] = q[2] = 0;
+    soup.add(Vec3(i % 2, 0, 0), p, q);
+  }
+  const auto model = soup.model();
+  std::vector<std::pair<Id, Id>> expected, found;
+  for (Id a = 0; a < model->triangleCount(); ++a)
+    for (Id b = a + 1; b < model->triangleCount(); ++b)
+      if (contactOf(model->points(), model->triangles()[a], model->triangles()[b]).kind != Contact::None)
+        expected.push_back({a, b});
+  for (const TrianglePair& pair : search(soup).pairs) found.push_back({pair.a, pair.b});
+  EXPECT_GT(expected.size(), 1000u);
+  EXPECT_EQ(found, expected);
+}
+
 TEST(SelfIntersections, AreFoundOnceForAGeometry) {
+  Monitor monitor;
   const auto model = testing::randomSoup(200, 0.3, 6).model(),
              same = testing::randomSoup(200, 0.3, 6).model();
-  const auto first = knownIntersections(*model);
+  const auto first = knownIntersections(*model, monitor);
   EXPECT_FALSE(first->segments.empty());
-  EXPECT_EQ(knownIntersections(*same), first);
-  EXPECT_TRUE(knownIntersections(*testing::cube(2).model())->pairs.empty());
+  EXPECT_EQ(knownIntersections(*same, monitor), first);
+  EXPECT_TRUE(knownIntersections(*testing::cube(2).model(), monitor)->pairs.empty());
 }
 
 TEST(SelfIntersections, StopsOnRequest) {
