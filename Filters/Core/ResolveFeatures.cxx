@@ -81,7 +81,8 @@ void resolveFeatures(PolyMesh& mesh, DistanceField& field, const ResolveFeatures
   if (mesh.stage < Stage::Projected)
     throw InputError("Features can only be resolved on a projected mesh: run Project first.");
   monitor.check(0.0, "feature detection");
-  const FeatureGraph graph = detectFeatures(field.model(), effective(options.features, mesh));
+  PartMonitor detection(monitor, 0.0, 0.05);
+  const FeatureGraph graph = detectFeatures(field.model(), effective(options.features, mesh), &detection);
   const WallSurface wall = wallSurface(mesh);
   if (wall.size() > 0) {
     NodeMover mover(mesh, options.limits, &monitor);
