@@ -28,7 +28,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A plain copy of a gzip'd file, gone with this object.
+/// A plain copy of a gzip'd file, gone with this object. Zero bytes of an OBJ file end lines: it is text, and
+/// what an archive wraps around it then is lines without meaning.
 class UnpackedFile {
  public:
   UnpackedFile(const fs::path& packed, const std::string& extension) {
@@ -37,7 +38,7 @@ class UnpackedFile {
     if (descriptor < 0)
       throw pm::InputError("No temporary file can be made to unpack " + packed.string() + ".");
     std::FILE* out = fdopen(descriptor, "wb");
-    const bool good = copy(packed, out);
+    const bool good = copy(packed, extension == ".obj", out);
     if (std::fclose(out) != 0 || !good) {
       std::remove(path_.c_str());
       throw pm::InputError("The file " + packed.string() +
@@ -50,13 +51,14 @@ class UnpackedFile {
   const std::string& path() const { return path_; }
 
  private:
-  static bool copy(const fs::path& packed, std::FILE* out) {
+  static bool copy(const fs::path& packed, bool isText, std::FILE* out) {
     gzFile in = gzopen(packed.c_str(), "rb");
     if (!in) return false;
     std::vector<char> buffer(1 << 20);
     int got = 0;
     bool written = true;
     while (written && (got = gzread(in, buffer.data(), static_cast<unsigned>(buffer.size()))) > 0) {
+      if (isText) std::replace(buffer.begin(), buffer.begin() + got, '\0', '\n');
       written = std::fwrite(buffer.data(), 1, got, out) == static_cast<std::size_t>(got);
     }
     return gzclose(in) == Z_OK && got == 0 && written;

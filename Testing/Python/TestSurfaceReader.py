@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import gzip
+import io
 import os
+import tarfile
 import tempfile
 import unittest
 
-from support import Messages, arrays, box, pm, sphere, strings
+from support import Messages, arrays, box, differences, pm, sphere, strings
 from vtkmodules.vtkIOGeometry import vtkSTLWriter
 from vtkmodules.vtkIOPLY import vtkPLYWriter
 
@@ -111,6 +113,16 @@ class TestSurfaceReader(unittest.TestCase):
 
     def test_unknown_format(self):
         self.assertRefused(self.write("x.step", "ISO-10303-21;"), ".step", ".stl")
+
+    def test_obj_in_an_archive_that_is_called_obj(self):
+        archive = io.BytesIO()
+        with tarfile.open(fileobj=archive, mode="w") as tar:
+            entry = tarfile.TarInfo("part.obj")
+            entry.size = len(OBJ.encode())
+            tar.addfile(entry, io.BytesIO(OBJ.encode()))
+        surface = self.read(self.write("part.obj.gz", archive.getvalue(), pack=True))
+        self.assertEqual(self.messages.errors, [])
+        self.assertEqual(differences(surface, self.read(self.write("part.obj", OBJ))), [])
 
     def test_damaged_gzip(self):
         path = self.write("x.stl.gz", "solid a\n" + FACET.format(0) * 200 + "endsolid\n", pack=True)
