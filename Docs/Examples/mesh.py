@@ -325,7 +325,7 @@ def mesh_geometry(pm, runner, options, geometry):
     filters = make_filters(pm, options)
     grid = None
     for name, stage in zip(STAGES, filters):
-        inputs = [data for data in (grid, geometry) if data is not None]
+        inputs = [data for data in (grid, geometry) if data is not None][:stage.GetNumberOfInputPorts()]
         for port, data in enumerate(inputs):
             stage.SetInputDataObject(port, data)
         try:

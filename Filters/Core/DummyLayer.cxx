@@ -208,15 +208,26 @@ void relax(PolyMesh& mesh, const QualityLimits& limits, Monitor& monitor) {
   }
 }
 
-}  // namespace
-
-PolyMesh dummyLayer(const PolyMesh& front, const DummyLayerOptions& options, Monitor& monitor) {
+PolyMesh builtLayer(const PolyMesh& front, const DummyLayerOptions& options, Monitor& monitor) {
   if (!(options.thickness > 0) || options.thickness > 0.5)
     throw InputError(
         fmt::format("The layer's thickness must be above 0 and at most 0.5 of the edge length, not {:g}.",
                     options.thickness));
   monitor.check(0, "dummy layer");
-  PolyMesh mesh = LayerBuilder(front, options.thickness).run();
+  return LayerBuilder(front, options.thickness).run();
+}
+
+}  // namespace
+
+PolyMesh dummyLayer(const PolyMesh& front, const DummyLayerOptions& options, Monitor& monitor) {
+  PolyMesh mesh = builtLayer(front, options, monitor);
+  relax(mesh, options.limits, monitor);
+  return mesh;
+}
+
+PolyMesh dummyLayer(PolyMesh&& front, const DummyLayerOptions& options, Monitor& monitor) {
+  PolyMesh mesh = builtLayer(front, options, monitor);
+  front = PolyMesh();
   relax(mesh, options.limits, monitor);
   return mesh;
 }

@@ -12,5 +12,7 @@ struct DummyLayerOptions {
 };
 
 PolyMesh dummyLayer(const PolyMesh& front, const DummyLayerOptions& options, Monitor& monitor);
+/// The same; frees the front as soon as the layer stands on it.
+PolyMesh dummyLayer(PolyMesh&& front, const DummyLayerOptions& options, Monitor& monitor);
 
 }  // namespace pm

@@ -197,7 +197,7 @@ bool FeatureSnapper::crowdsPath(Id row, const Vec3& at) const {
 bool FeatureSnapper::tryMove(Id row, const Vec3& to, double tolerance) {
   const Id p = wall_.nodes[row], b = mesh_.base[p];
   const Vec3 from = mesh_.points[p];
-  if (deviation(row, to) > std::max(deviation(row, from), tolerance * wall_.scale[row])) return false;
+  if (!staysNear(row, to, tolerance * wall_.scale[row])) return false;
   bool kept = false;
   if (b != kNone) {
     const Vec3 low = mesh_.points[b];
@@ -213,19 +213,34 @@ bool FeatureSnapper::tryMove(Id row, const Vec3& to, double tolerance) {
   return kept;
 }
 
-/// Largest distance to the geometry of the representative points that follow the node, were it there.
-double FeatureSnapper::deviation(Id row, const Vec3& at) const {
+/// Were the node at `to`, would the representative points that follow it be within the limit of the geometry,
+/// or no farther than they are?
+bool FeatureSnapper::staysNear(Id row, const Vec3& to, double limit) const {
+  const double there = deviation(row, to, limit);
+  return there <= limit || there <= deviation(row, mesh_.points[wall_.nodes[row]], there);
+}
+
+/// Largest distance to the geometry of the representative points that follow the node, were it there. Below
+/// `enough` it may come out smaller: the triangle nearest to one point often proves that the next is near.
+double FeatureSnapper::deviation(Id row, const Vec3& at, double enough) const {
   const Id p = wall_.nodes[row];
-  double worst = field_.closest(at).distance2;
-  for (Id n : wall_.neighbours[row])
-    worst = std::max(worst, field_.closest(0.5 * (at + mesh_.points[wall_.nodes[n]])).distance2);
+  const SurfaceModel& model = field_.model();
+  Closest near = field_.closest(at);
+  double worst = std::sqrt(near.distance2);
+  const auto add = [&](const Vec3& point) {
+    const Closest seed = model.closestOnTriangle(point, near.triangle);
+    if (std::sqrt(seed.distance2) < enough) return;
+    near = model.closest(point, seed);
+    worst = std::max(worst, std::sqrt(near.distance2));
+  };
+  for (Id n : wall_.neighbours[row]) add(0.5 * (at + mesh_.points[wall_.nodes[n]]));
   for (Id f : wall_.faces[row]) {
     Vec3 sum = at;
     for (Id q : mesh_.faces[f])
       if (q != p) sum += mesh_.points[q];
-    worst = std::max(worst, field_.closest(sum / static_cast<double>(mesh_.faces[f].size())).distance2);
+    add(sum / static_cast<double>(mesh_.faces[f].size()));
   }
-  return std::sqrt(worst);
+  return worst;
 }
 
 Vec3 FeatureSnapper::wallNormal(Id row) const {
@@ -260,8 +275,7 @@ void FeatureSnapper::smoothWallNode(Id row, bool onlyBetter) {
   const Vec3 to = field_.closest(from + 0.5 * step).point;
   if ((to - from).norm() < 0.01 * wall_.scale[row]) return;
   if (onlyBetter) {
-    if (deviation(row, to) <= std::max(deviation(row, from), kSmoothTolerance * wall_.scale[row]))
-      mover_.improve(p, to);
+    if (staysNear(row, to, kSmoothTolerance * wall_.scale[row])) mover_.improve(p, to);
   } else {
     tryMove(row, to, kSmoothTolerance);
   }
@@ -276,7 +290,7 @@ void FeatureSnapper::slideOnCurve(Id row) {
   const ClosestOnFeature on = graph_.closestOnCurve(0.5 * mesh_.points[p] + 0.25 * (a + b), curve_[row]);
   const double limit = kSmoothTolerance * wall_.scale[row];
   if (on.segment == kNone || (on.point - mesh_.points[p]).norm() < 0.5 * limit) return;
-  if (deviation(row, on.point) > std::max(deviation(row, mesh_.points[p]), limit)) return;
+  if (!staysNear(row, on.point, limit)) return;
   if (!mover_.improve(p, on.point)) return;
   target_[row] = mesh_.points[p];
   changed_[p] = pass_;

@@ -41,7 +41,8 @@ class FeatureSnapper {
   void snapNode(Id row);
   bool crowdsPath(Id row, const Vec3& at) const;
   bool tryMove(Id row, const Vec3& to, double tolerance);
-  double deviation(Id row, const Vec3& at) const;
+  bool staysNear(Id row, const Vec3& to, double limit) const;
+  double deviation(Id row, const Vec3& at, double enough) const;
   Vec3 wallNormal(Id row) const;
   Vec3 neighbourMean(Id point) const;
   void smoothWallNode(Id row, bool onlyBetter);

@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace pm {
 namespace {
 
 constexpr double kDegree = 3.14159265358979323846 / 180;
+constexpr std::size_t kMostCorners = 96;  // of a cell's faces together; a hexahedron has 24
 
 template <class T>
 void sortUnique(std::vector<T>& v) {
@@ -28,8 +30,10 @@ struct NodeMover::Touched {
   std::vector<Id> shapes;  // faces of the points: their shape changes
   std::vector<Id> cells;   // cells of the points: volume and centre change
   std::vector<Id> faces;   // all faces of those cells: their angle changes
-  std::vector<FaceState> oldFaces;
+  // As they were; as many as have been touched so far.
+  std::vector<FaceMeasures> oldShapes;
   std::vector<CellMeasures> oldCells;
+  std::vector<FaceState> oldFaces;
   std::vector<Vec3> oldPoints;
 };
 
@@ -47,16 +51,68 @@ NodeMover::NodeMover(PolyMesh& mesh, const QualityLimits& limits, const Monitor*
       pointCells_(pointCells(mesh)),
       pointFaces_(pointFaces(mesh)),
       cellFaces_(cellFaces(mesh)),
-      cellPoints_(cellPoints(mesh)) {
+      cellPoints_(cellPoints(mesh)),
+      changed_(mesh.cellCount) {
   tbb::parallel_for(Id(0), mesh.faceCount(),
                     [&](Id f) { faces_[f].shape = measureFace(mesh_.points, mesh_.faces[f]); });
   tbb::parallel_for(Id(0), mesh.cellCount, [&](Id c) { cells_[c] = cellNow(c); });
   tbb::parallel_for(Id(0), mesh.faceCount(), [&](Id f) { relate(f); });
 }
 
+// measureCell() with what is known of the faces already: one cross product for each central triangle.
 CellMeasures NodeMover::cellNow(Id c) const {
-  return measureCell(mesh_, c, cellFaces_[c], cellPoints_[c],
-                     [&](Id f) -> const Vec3& { return faces_[f].shape.centre; });
+  const Span<Id> faces = cellFaces_[c];
+  const auto centreOf = [&](Id f) -> const Vec3& { return faces_[f].shape.centre; };
+  std::size_t corners = 0;
+  for (Id f : faces) corners += mesh_.faces[f].size();
+  if (corners > kMostCorners) return measureCell(mesh_, c, faces, cellPoints_[c], centreOf);
+
+  const Vec3 origin = mesh_.points[cellPoints_[c][0]];
+  const double faceCount = static_cast<double>(faces.size());
+  Vec3 average = Vec3::Zero(), estimate = Vec3::Zero();
+  for (Id p : cellPoints_[c]) average += mesh_.points[p] - origin;
+  average /= static_cast<double>(cellPoints_[c].size());
+  for (Id f : faces) estimate += centreOf(f) - origin;
+  estimate /= faceCount;
+
+  // Central tetrahedra about the average, and OpenFOAM's pyramids about the mean of the face centres.
+  std::array<Vec3, kMostCorners> triangles;  // six times the volume of a tetrahedron, per unit of its height
+  Vec3 moment = Vec3::Zero(), foamMoment = Vec3::Zero();
+  double volume = 0, foamVolume = 0;
+  std::size_t k = 0;
+  for (Id f : faces) {
+    const double sign = mesh_.owner[f] == c ? 1 : -1;
+    const Vec3 centre = centreOf(f), at = centre - origin, apex = at - average;
+    const double pyramid = sign * faces_[f].shape.normal.dot(at - estimate);
+    foamVolume += pyramid;
+    foamMoment += pyramid * (0.75 * at + 0.25 * estimate);
+    const Span<Id> row = mesh_.faces[f];
+    Vec3 a = mesh_.points[row[row.size() - 1]] - centre;
+    for (Id p : row) {
+      const Vec3 b = mesh_.points[p] - centre;
+      triangles[k] = sign * a.cross(b);
+      const double tet = triangles[k++].dot(apex) / 6;
+      volume += tet;
+      moment += tet * (a + b + 3 * apex);
+      a = b;
+    }
+  }
+  CellMeasures cell;
+  const Vec3 centre = volume != 0 ? Vec3(average + moment / (4 * volume)) : average;
+  const Vec3 foamCentre = foamVolume != 0 ? Vec3(foamMoment / foamVolume) : estimate;
+  cell.volume = volume;
+  cell.centre = origin + centre;
+  cell.foamCentre = origin + foamCentre;
+  cell.minTet = cell.minPyramid = std::numeric_limits<double>::infinity();
+  k = 0;
+  for (Id f : faces) {
+    const Vec3 at = centreOf(f) - origin, apex = at - centre;
+    const double sign = mesh_.owner[f] == c ? 1 : -1;
+    cell.minPyramid = std::min(cell.minPyramid, sign * faces_[f].shape.normal.dot(at - foamCentre) / 3);
+    for (std::size_t end = k + mesh_.faces[f].size(); k < end; ++k)
+      cell.minTet = std::min(cell.minTet, triangles[k].dot(apex) / 6);
+  }
+  return cell;
 }
 
 // Angle and skewness of a face from the current centres.
@@ -73,11 +129,11 @@ void NodeMover::relate(Id f) {
   }
 }
 
-bool NodeMover::faceShapeHolds(Id f, const FaceState& old) const {
+bool NodeMover::faceShapeHolds(Id f, const FaceMeasures& old) const {
   const FaceMeasures& now = faces_[f].shape;
   const double minEta = f < mesh_.internalFaces() ? limits_.minEtaInternal : limits_.minEtaBoundary;
-  return (now.eta >= minEta || now.eta >= old.shape.eta) &&
-         (now.warpage <= limits_.maxWarpage || now.warpage <= old.shape.warpage);
+  return (now.eta >= minEta || now.eta >= old.eta) &&
+         (now.warpage <= limits_.maxWarpage || now.warpage <= old.warpage);
 }
 
 bool NodeMover::faceAngleHolds(Id f, const FaceState& old) const {
@@ -122,6 +178,7 @@ double NodeMover::badness(Id p) const {
 
 void NodeMover::gather(const Id* points, std::size_t count, Touched& t) const {
   t.shapes.clear(), t.cells.clear(), t.faces.clear();
+  t.oldShapes.clear(), t.oldCells.clear(), t.oldFaces.clear();
   for (std::size_t i = 0; i < count; ++i) {
     for (Id f : pointFaces_[points[i]]) t.shapes.push_back(f);
     for (Id c : pointCells_[points[i]]) t.cells.push_back(c);
@@ -130,9 +187,6 @@ void NodeMover::gather(const Id* points, std::size_t count, Touched& t) const {
     sortUnique(t.shapes);
     sortUnique(t.cells);
   }
-  for (Id c : t.cells)
-    for (Id f : cellFaces_[c]) t.faces.push_back(f);
-  sortUnique(t.faces);
 }
 
 // The worst measure got better; or it stayed (two faces of a symmetric prism share it) and what is over the
@@ -143,9 +197,12 @@ bool NodeMover::isBetter(const Touched& t) const {
     worst = std::max(worst, badness);
     excess += std::max(0.0, badness - 1);
   };
+  std::size_t k = 0;  // both lists ascend, and the faces hold the shapes
   for (std::size_t i = 0; i < t.faces.size(); ++i) {
     const bool internal = t.faces[i] < mesh_.internalFaces();
-    add(badnessOfFace(t.oldFaces[i], internal), before, excessBefore);
+    FaceState old = t.oldFaces[i];
+    if (k < t.shapes.size() && t.shapes[k] == t.faces[i]) old.shape = t.oldShapes[k++];
+    add(badnessOfFace(old, internal), before, excessBefore);
     add(badnessOfFace(faces_[t.faces[i]], internal), after, excessAfter);
   }
   for (std::size_t i = 0; i < t.cells.size(); ++i) {
@@ -155,48 +212,79 @@ bool NodeMover::isBetter(const Touched& t) const {
   return after < before || (after == before && excessAfter < excessBefore);
 }
 
-bool NodeMover::attempt(const Id* points, const Vec3* targets, std::size_t count, bool mustImprove) {
+// Cheapest checks first; each notes what it changes.
+bool NodeMover::tryShapes(Touched& t) {
+  for (Id f : t.shapes) {
+    t.oldShapes.push_back(faces_[f].shape);
+    faces_[f].shape = measureFace(mesh_.points, mesh_.faces[f]);
+    if (!faceShapeHolds(f, t.oldShapes.back())) return false;
+  }
+  return true;
+}
+
+bool NodeMover::tryCells(Touched& t) {
+  for (Id c : t.cells) {
+    t.oldCells.push_back(cells_[c]);
+    cells_[c] = cellNow(c);
+    if (!cellHolds(cells_[c], t.oldCells.back())) return false;
+  }
+  return true;
+}
+
+bool NodeMover::tryAngles(Touched& t) {
+  for (Id c : t.cells)
+    for (Id f : cellFaces_[c]) t.faces.push_back(f);
+  sortUnique(t.faces);
+  for (Id f : t.faces) {
+    t.oldFaces.push_back(faces_[f]);
+    relate(f);
+    if (!faceAngleHolds(f, t.oldFaces.back())) return false;
+  }
+  return true;
+}
+
+void NodeMover::undo(const Id* points, const Touched& t) {
+  for (std::size_t i = 0; i < t.oldPoints.size(); ++i) mesh_.points[points[i]] = t.oldPoints[i];
+  for (std::size_t i = 0; i < t.oldFaces.size(); ++i) faces_[t.faces[i]] = t.oldFaces[i];
+  for (std::size_t i = 0; i < t.oldShapes.size(); ++i) faces_[t.shapes[i]].shape = t.oldShapes[i];
+  for (std::size_t i = 0; i < t.oldCells.size(); ++i) cells_[t.cells[i]] = t.oldCells[i];
+}
+
+bool NodeMover::attempt(const Id* points, const Vec3* targets, std::size_t count, bool mustImprove,
+                        const std::function<bool()>& accept) {
   thread_local Touched t;
   t.oldPoints.clear();
   bool moves = false;
-  for (std::size_t i = 0; i < count; ++i) {
-    Vec3& p = mesh_.points[points[i]];
-    t.oldPoints.push_back(p);
-    for (int a = 0; a < 3; ++a)
-      if (!(mesh_.fixed[points[i]] >> a & 1) && p[a] != targets[i][a]) moves = true;
-  }
-  if (!moves) return !mustImprove;
-  gather(points, count, t);
-  t.oldFaces.clear(), t.oldCells.clear();
-  for (Id f : t.faces) t.oldFaces.push_back(faces_[f]);
-  for (Id c : t.cells) t.oldCells.push_back(cells_[c]);
-  for (std::size_t i = 0; i < count; ++i)
-    for (int a = 0; a < 3; ++a)
-      if (!(mesh_.fixed[points[i]] >> a & 1)) mesh_.points[points[i]][a] = targets[i][a];
-
-  // Cheapest checks first; `faces` is sorted and holds `shapes`, so both are walked side by side.
-  const auto holds = [&] {
-    std::size_t k = 0;
-    for (Id f : t.shapes) {
-      while (t.faces[k] != f) ++k;
-      faces_[f].shape = measureFace(mesh_.points, mesh_.faces[f]);
-      if (!faceShapeHolds(f, t.oldFaces[k])) return false;
-    }
-    for (std::size_t i = 0; i < t.cells.size(); ++i) {
-      cells_[t.cells[i]] = cellNow(t.cells[i]);
-      if (!cellHolds(cells_[t.cells[i]], t.oldCells[i])) return false;
-    }
-    for (std::size_t i = 0; i < t.faces.size(); ++i) {
-      relate(t.faces[i]);
-      if (!faceAngleHolds(t.faces[i], t.oldFaces[i])) return false;
-    }
-    return !mustImprove || isBetter(t);
+  const auto forEachFree = [&](const auto& body) {
+    for (std::size_t i = 0; i < count; ++i)
+      for (int a = 0; a < 3; ++a)
+        if (!(mesh_.fixed[points[i]] >> a & 1)) body(mesh_.points[points[i]][a], targets[i][a]);
   };
-  if (holds()) return true;
-  for (std::size_t i = 0; i < count; ++i) mesh_.points[points[i]] = t.oldPoints[i];
-  for (std::size_t i = 0; i < t.faces.size(); ++i) faces_[t.faces[i]] = t.oldFaces[i];
-  for (std::size_t i = 0; i < t.cells.size(); ++i) cells_[t.cells[i]] = t.oldCells[i];
-  return false;
+  for (std::size_t i = 0; i < count; ++i) t.oldPoints.push_back(mesh_.points[points[i]]);
+  forEachFree([&](double x, double to) { moves = moves || x != to; });
+  if (!moves) return !mustImprove && (!accept || accept());
+  gather(points, count, t);
+  forEachFree([&](double& x, double to) { x = to; });
+  if (!tryShapes(t) || (accept && !accept()) || !tryCells(t) || !tryAngles(t) ||
+      (mustImprove && !isBetter(t))) {
+    undo(points, t);
+    return false;
+  }
+  for (Id f : t.faces) {
+    changed_[mesh_.owner[f]].store(tick_, std::memory_order_relaxed);
+    if (f < mesh_.internalFaces()) changed_[mesh_.neighbour[f]].store(tick_, std::memory_order_relaxed);
+  }
+  return true;
+}
+
+Id NodeMover::lastChange(Id p) const {
+  Id last = 0;
+  const auto look = [&](Id point) {
+    for (Id c : pointCells_[point]) last = std::max(last, changed_[c].load(std::memory_order_relaxed));
+  };
+  look(p);
+  if (mesh_.base[p] != kNone) look(mesh_.base[p]);
+  return last;
 }
 
 double NodeMover::drift(Id p, const Vec3& target, int halvings) {
@@ -212,7 +300,8 @@ std::vector<std::vector<Id>> NodeMover::colour(const std::vector<Id>& points) co
   // colour when no cell of one is a cell of the other or a face neighbour of one.
   constexpr int kWords = 3, kColours = 64 * kWords;
   using Mask = std::array<std::uint64_t, kWords>;
-  std::vector<Mask> used(mesh_.cellCount, Mask{});
+  std::vector<Id> slotOf(mesh_.cellCount, kNone);  // of the cells that have a colour
+  std::vector<Mask> used;
   std::vector<std::vector<Id>> groups;
   std::vector<Id> cells, serial;
   for (Id p : points) {
@@ -220,17 +309,28 @@ std::vector<std::vector<Id>> NodeMover::colour(const std::vector<Id>& points) co
     if (mesh_.base[p] != kNone)
       cells.insert(cells.end(), pointCells_[mesh_.base[p]].begin(), pointCells_[mesh_.base[p]].end());
     Mask taken{};
+    const auto take = [&](Id c) {
+      if (slotOf[c] == kNone) return;
+      for (int w = 0; w < kWords; ++w) taken[w] |= used[slotOf[c]][w];
+    };
     for (Id c : cells)
-      for (Id f : cellFaces_[c])
-        for (Id side : {mesh_.owner[f], f < mesh_.internalFaces() ? mesh_.neighbour[f] : mesh_.owner[f]})
-          for (int w = 0; w < kWords; ++w) taken[w] |= used[side][w];
+      for (Id f : cellFaces_[c]) {
+        take(mesh_.owner[f]);
+        if (f < mesh_.internalFaces()) take(mesh_.neighbour[f]);
+      }
     int colour = 0;
     while (colour < kColours && (taken[colour / 64] >> (colour % 64) & 1)) ++colour;
     if (colour == kColours) {
       serial.push_back(p);
       continue;
     }
-    for (Id c : cells) used[c][colour / 64] |= std::uint64_t(1) << (colour % 64);
+    for (Id c : cells) {
+      if (slotOf[c] == kNone) {
+        slotOf[c] = static_cast<Id>(used.size());
+        used.push_back({});
+      }
+      used[slotOf[c]][colour / 64] |= std::uint64_t(1) << (colour % 64);
+    }
     if (static_cast<int>(groups.size()) <= colour) groups.resize(colour + 1);
     groups[colour].push_back(p);
   }

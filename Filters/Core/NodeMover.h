@@ -4,10 +4,15 @@
 // The mover caches face and cell measures of the whole mesh and keeps them current move by move; an undone
 // move restores points and caches to the bit. What a move touches: the cells around the point and all their
 // faces. Where a face or cell is outside a limit already, a move may not make it worse.
+//
+// The mover also notes when something last moved around each point, so that callers need not try again what
+// cannot end differently: an attempt depends on its targets and on what lastChange() covers, nothing else.
 #pragma once
 
 #include <tbb/parallel_for.h>
 
+#include <atomic>
+#include <functional>
 #include <vector>
 
 #include "MeshQuality.h"
@@ -22,6 +27,12 @@ class NodeMover {
 
   /// Moves p to target (its fixed coordinates stay); true when kept.
   bool move(Id p, const Vec3& target) { return attempt(&p, &target, 1, false); }
+  /// As move, but kept only if accept() agrees. It is asked while the point is there and the shapes of its
+  /// faces are current, before the costly checks.
+  template <class Accept>
+  bool moveIf(Id p, const Vec3& target, const Accept& accept) {
+    return attempt(&p, &target, 1, false, std::cref(accept));
+  }
   /// As move, but a refused target is pulled back half way, up to `halvings` times. Returns the kept fraction
   /// of the way, 0 when the point stayed.
   double drift(Id p, const Vec3& target, int halvings = 3);
@@ -31,6 +42,10 @@ class NodeMover {
   /// Moves several points at once, all or none.
   bool moveTogether(const std::vector<Id>& points, const std::vector<Vec3>& targets) {
     return attempt(points.data(), targets.data(), points.size(), false);
+  }
+  template <std::size_t N>
+  bool moveTogether(const Id (&points)[N], const Vec3 (&targets)[N]) {
+    return attempt(points, targets, N, false);
   }
   bool improveTogether(const std::vector<Id>& points, const std::vector<Vec3>& targets) {
     return attempt(points.data(), targets.data(), points.size(), true);
@@ -45,19 +60,27 @@ class NodeMover {
   /// Calls body(point) for every point, group by group, the points of a group in parallel. Throws AbortError
   /// between groups when the monitor says so.
   template <class Body>
-  void forEach(const std::vector<std::vector<Id>>& groups, const Body& body) const {
+  void forEach(const std::vector<std::vector<Id>>& groups, const Body& body) {
     for (const auto& group : groups) {
       if (monitor_ && monitor_->aborted()) throw AbortError("Stopped on request.");
+      ++tick_;
       tbb::parallel_for(tbb::blocked_range<std::size_t>(0, group.size(), 16), [&](const auto& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) body(group[i]);
       });
     }
   }
 
+  /// Counts the groups of forEach(): the time of a move or of an attempt.
+  Id tick() const { return tick_; }
+  /// When something last moved that the measures around p and, for a wall point, around its base depend on.
+  /// What failed at a later tick fails again.
+  Id lastChange(Id p) const;
+
   const PolyMesh& mesh() const { return mesh_; }
   const Vec3& point(Id p) const { return mesh_.points[p]; }
   Span<Id> cellsOf(Id p) const { return pointCells_[p]; }
   Span<Id> facesOf(Id p) const { return pointFaces_[p]; }
+  Span<Id> pointsOf(Id cell) const { return cellPoints_[cell]; }
   const Vec3& faceCentre(Id f) const { return faces_[f].shape.centre; }
   const Vec3& faceNormal(Id f) const { return faces_[f].shape.normal; }  ///< length = area, leaves the owner
   /// Sum of the faces' area vectors; of the wall faces around a node, its outward direction there.
@@ -75,11 +98,16 @@ class NodeMover {
   };
   struct Touched;  // scratch of one attempt
 
-  bool attempt(const Id* points, const Vec3* targets, std::size_t count, bool mustImprove);
+  bool attempt(const Id* points, const Vec3* targets, std::size_t count, bool mustImprove,
+               const std::function<bool()>& accept = {});
   void gather(const Id* points, std::size_t count, Touched& t) const;
+  bool tryShapes(Touched& t);
+  bool tryCells(Touched& t);
+  bool tryAngles(Touched& t);
+  void undo(const Id* points, const Touched& t);
   void relate(Id f);
   bool isBetter(const Touched& t) const;
-  bool faceShapeHolds(Id f, const FaceState& old) const;
+  bool faceShapeHolds(Id f, const FaceMeasures& old) const;
   bool faceAngleHolds(Id f, const FaceState& old) const;
   bool cellHolds(const CellMeasures& now, const CellMeasures& old) const;
   double badnessOfFace(const FaceState& s, bool internal) const;
@@ -93,6 +121,8 @@ class NodeMover {
   std::vector<FaceState> faces_;
   std::vector<CellMeasures> cells_;
   Csr<Id> pointCells_, pointFaces_, cellFaces_, cellPoints_;
+  Id tick_ = 1;
+  std::vector<std::atomic<Id>> changed_;  // #C tick of the last kept move in the cell or across a face of it
 };
 
 }  // namespace pm

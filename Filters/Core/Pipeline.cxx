@@ -30,7 +30,7 @@ PolyMesh runPipeline(const SurfaceModel& given, const PipelineOptions& options, 
     mesh = paintFront(tree, model, options.front, monitor, &r.front);
   }
   if (options.stopAfter <= Stage::Front) return mesh;
-  mesh = dummyLayer(mesh, options.layer, monitor);
+  mesh = dummyLayer(std::move(mesh), options.layer, monitor);
   if (options.stopAfter <= Stage::Layer) return mesh;
   DistanceField field(model, mesh.finestSize);
   project(mesh, field, options.project, monitor);

@@ -33,8 +33,7 @@ class Projector {
         field_(field),
         options_(options),
         mover_(mesh, options.limits, &monitor),
-        wall_(wallSurface(mesh)),
-        cellPoints_(cellPoints(mesh)) {
+        wall_(wallSurface(mesh)) {
     std::vector<Id> bases;
     for (Id p : wall_.nodes) bases.push_back(mesh.base[p]);
     wallGroups_ = mover_.colour(wall_.nodes);
@@ -42,6 +41,11 @@ class Projector {
     rowOfBase_.assign(mesh.points.size(), kNone);
     for (Id row = 0; row < wall_.size(); ++row) rowOfBase_[bases[row]] = row;
     distance_.assign(wall_.size(), 0.0);
+    driftTried_.assign(wall_.size(), 0);
+    smoothTried_ = leadTried_ = driftTried_;
+    led_.assign(wall_.size(), Vec3::Zero());
+    innerTried_.assign(mesh.points.size(), 0);
+    freeTried_ = innerTried_;
     collectInner(bases);
   }
 
@@ -70,6 +74,14 @@ class Projector {
   }
 
  private:
+  /// False when nothing around the point has moved since the attempt that `tried` remembers: another would
+  /// end as that one. Notes an attempt otherwise.
+  bool worthTrying(Id p, Id& tried) const {
+    if (mover_.lastChange(p) < tried) return false;
+    tried = mover_.tick();
+    return true;
+  }
+
   double scale(Id p) const { return wall_.scale[wall_.rowOf[p]]; }
 
   /// Outward unit normal of the wall at a node, from the faces around it.
@@ -109,32 +121,43 @@ class Projector {
 
   // 4.6.2, front drifting: towards the closest point, part of the way.
   void drift(double part) {
+    if (part != lastPart_) std::fill(driftTried_.begin(), driftTried_.end(), 0);
+    lastPart_ = part;
     mover_.forEach(wallGroups_, [&](Id p) {
-      const Vec3 x = mesh_.points[p];
-      const Vec3 way = field_.closest(x).point - x;
-      const double distance = way.norm();
-      double& left = distance_[wall_.rowOf[p]];
-      left = distance;
-      if (distance < 1e-12 * scale(p)) return;
-      const double wanted = distance < kArrived * scale(p) ? 1 : part;
-      if (mover_.move(p, x + wanted * way)) {
-        left = (1 - wanted) * distance;
-        return;
-      }
-      // The prism is in the way: take its foot along.
-      const Id b = mesh_.base[p];
-      if (mover_.moveTogether({p, b}, {x + wanted * way, mesh_.points[b] + 0.5 * wanted * way}))
-        left = (1 - wanted) * distance;
-      else
-        left = (1 - 0.5 * wanted * mover_.drift(p, x + 0.5 * wanted * way, 2)) * distance;
+      const Id row = wall_.rowOf[p];
+      if (!worthTrying(p, driftTried_[row])) return;
+      const double before = distance_[row];
+      driftNode(p, part, distance_[row]);
+      if (distance_[row] != before) smoothTried_[row] = 0;
     });
+  }
+
+  void driftNode(Id p, double part, double& left) {
+    const Vec3 x = mesh_.points[p];
+    const Vec3 way = field_.closest(x).point - x;
+    const double distance = way.norm();
+    left = distance;
+    if (distance < 1e-12 * scale(p)) return;
+    const double wanted = distance < kArrived * scale(p) ? 1 : part;
+    if (mover_.move(p, x + wanted * way)) {
+      left = (1 - wanted) * distance;
+      return;
+    }
+    // The prism is in the way: take its foot along.
+    const Id b = mesh_.base[p];
+    if (mover_.moveTogether({p, b}, {x + wanted * way, mesh_.points[b] + 0.5 * wanted * way}))
+      left = (1 - wanted) * distance;
+    else
+      left = (1 - 0.5 * wanted * mover_.drift(p, x + 0.5 * wanted * way, 2)) * distance;
   }
 
   // 4.5.2: smooth in the tangent plane estimated from the mesh, then back towards the geometry. A node keeps
   // the height above the geometry it had got to; only the drift brings it nearer.
   void smoothFront(double part) {
+    if (part != 1) std::fill(smoothTried_.begin(), smoothTried_.end(), 0);
     mover_.forEach(wallGroups_, [&](Id p) {
       const Id row = wall_.rowOf[p];
+      if (!worthTrying(p, smoothTried_[row])) return;
       const Vec3 x = mesh_.points[p];
       Vec3 mean, n;
       if (!meanAround(row, mean, n)) return;
@@ -154,28 +177,32 @@ class Projector {
   // neighbours'.
   void leadBases() {
     std::vector<Vec3> ideal(wall_.size()), smooth(wall_.size());
-    for (Id row = 0; row < wall_.size(); ++row) {
-      const Id p = wall_.nodes[row];
-      ideal[row] = -kPrismHeight * wall_.scale[row] * normalAt(p);
-    }
+    tbb::parallel_for(Id(0), wall_.size(), [&](Id row) {
+      ideal[row] = -kPrismHeight * wall_.scale[row] * normalAt(wall_.nodes[row]);
+    });
     for (int sweep = 0; sweep < 2; ++sweep) {
-      for (Id row = 0; row < wall_.size(); ++row) {
+      tbb::parallel_for(Id(0), wall_.size(), [&](Id row) {
         Vec3 sum = Vec3::Zero();
         for (Id other : wall_.neighbours[row]) sum += ideal[other];
         smooth[row] = 0.5 * ideal[row] + 0.5 * sum / std::max<double>(1, wall_.neighbours[row].size());
-      }
+      });
       ideal.swap(smooth);
     }
     mover_.forEach(baseGroups_, [&](Id b) {
       const Id row = rowOfBase_[b];
       const Vec3 step = 0.5 * (mesh_.points[wall_.nodes[row]] + ideal[row] - mesh_.points[b]);
-      if (step.norm() > kSmallStep * wall_.scale[row]) mover_.drift(b, mesh_.points[b] + step, 1);
+      if (step.norm() <= kSmallStep * wall_.scale[row]) return;
+      const Vec3 target = mesh_.points[b] + step;
+      if (target != led_[row]) leadTried_[row] = 0;
+      led_[row] = target;
+      if (worthTrying(b, leadTried_[row])) mover_.drift(b, target, 1);
     });
   }
 
   // 4.5.1: Laplacian, kept only where the worst local measure gets better.
   void smoothInner() {
     mover_.forEach(innerGroups_, [&](Id p) {
+      if (!worthTrying(p, innerTried_[p])) return;
       Vec3 mean = Vec3::Zero();
       for (Id c : mover_.cellsOf(p)) mean += mover_.cellCentre(c);
       const Vec3 step = 0.5 * (mean / double(mover_.cellsOf(p).size()) - mesh_.points[p]);
@@ -191,11 +218,12 @@ class Projector {
     for (Id row = 0; row < wall_.size(); ++row) {
       if (distance_[row] < kStuck * wall_.scale[row]) continue;
       for (Id c : mover_.cellsOf(wall_.nodes[row]))
-        around.insert(around.end(), cellPoints_[c].begin(), cellPoints_[c].end());
+        around.insert(around.end(), mover_.pointsOf(c).begin(), mover_.pointsOf(c).end());
     }
     std::sort(around.begin(), around.end());
     around.erase(std::unique(around.begin(), around.end()), around.end());
     mover_.forEach(mover_.colour(around), [&](Id p) {
+      if (!worthTrying(p, freeTried_[p])) return;
       for (double step : {0.2, 0.07}) {
         for (int k = 0; k < 6; ++k) {
           Vec3 d = Vec3::Zero();
@@ -217,7 +245,7 @@ class Projector {
       std::vector<Id> next;
       for (Id p : ring)
         for (Id c : mover_.cellsOf(p))
-          for (Id q : cellPoints_[c])
+          for (Id q : mover_.pointsOf(c))
             if (!seen[q]) {
               seen[q] = 1;
               next.push_back(q);
@@ -236,8 +264,11 @@ class Projector {
   WallSurface wall_;
   std::vector<std::vector<Id>> wallGroups_, baseGroups_, innerGroups_;
   std::vector<Id> rowOfBase_;
-  Csr<Id> cellPoints_;
   std::vector<double> distance_;  // of each wall node to the geometry, as its last drift left it
+  double lastPart_ = 0;           // of the way, in the last drift
+  std::vector<Id> driftTried_, smoothTried_, leadTried_;  // #W tick of the last attempt
+  std::vector<Id> innerTried_, freeTried_;                // #P
+  std::vector<Vec3> led_;                                 // #W where each base was last led to
 };
 
 }  // namespace

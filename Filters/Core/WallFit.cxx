@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace pm {
 namespace {
@@ -31,66 +32,94 @@ struct Around {
 class WallFitter {
  public:
   WallFitter(NodeMover& mover, const WallSurface& wall, const DistanceField& field)
-      : mover_(mover), wall_(wall), field_(field), unit_(mover.mesh().finestSize) {}
+      : mover_(mover), wall_(wall), field_(field), unit_(mover.mesh().finestSize) {
+    fitTried_.assign(wall.size(), 0);
+    searchTried_ = fitTried_;
+  }
 
   void fit(Id p) {
     const Id row = wall_.rowOf[p];
+    if (!worthTrying(p, fitTried_[row])) return;
     Vec3 n = mover_.areaVector(wall_.faces[row]);
     if (!(n.norm() > 0)) return;
     n.normalize();
     double lowest = 0, highest = 0, own = 0;
-    const double before = look(p, n, &lowest, &highest, &own);
+    const double before = look(p, n, lowest, highest, own);
     const double shift =
         std::clamp(0.5 * (lowest + highest), own - kMostShift * unit_, own + kMostShift * unit_);
     if (std::abs(shift) < 0.002 * unit_) return;
-    const Vec3 old = mover_.point(p);
-    if (mover_.move(p, old + shift * n) && look(p, n, nullptr, nullptr, nullptr) >= before)
-      mover_.move(p, old);
+    mover_.moveIf(p, mover_.point(p) + shift * n, [&] { return look(p, before) < before; });
   }
 
   // Maximum approximation (4.7.5): where a face stays off the geometry, often at an edge that found no path,
   // the node tries places around it on the surface.
   void search(Id p) {
     const Id row = wall_.rowOf[p];
+    if (!worthTrying(p, searchTried_[row])) return;
     const Vec3 n = mover_.areaVector(wall_.faces[row]);
-    double best = look(p, n, nullptr, nullptr, nullptr);
+    double best = look(p);
     if (!(n.norm() > 0) || best < std::pow(kFar, 4)) return;
     const Vec3 u = n.unitOrthogonal(), v = n.normalized().cross(u);
     for (double step : kSteps)
       for (int k = 0; k < 8; ++k) {
         const double angle = k * 0.25 * 3.14159265358979323846;
-        const Vec3 old = mover_.point(p);
-        const Vec3 to = old + step * wall_.scale[row] * (std::cos(angle) * u + std::sin(angle) * v);
-        if (!mover_.move(p, field_.closest(to).point)) continue;
-        const double now = look(p, n, nullptr, nullptr, nullptr);
-        if (now < kGain * best)
+        const Vec3 to =
+            mover_.point(p) + step * wall_.scale[row] * (std::cos(angle) * u + std::sin(angle) * v);
+        double now = best;
+        if (mover_.moveIf(p, field_.closest(to).point, [&] {
+              now = look(p, kGain * best);
+              return now < kGain * best;
+            }))
           best = now;
-        else
-          mover_.move(p, old);
       }
   }
 
  private:
-  // Sum of the points' capped distances to the fourth power, close to the largest of them but smooth; and the
-  // range of their signed distances along n (positive: the geometry lies outward).
-  double look(Id p, const Vec3& n, double* lowest, double* highest, double* own) const {
+  /// False when nothing around the point has moved since the attempt that `tried` remembers.
+  bool worthTrying(Id p, Id& tried) const {
+    if (mover_.lastChange(p) < tried) return false;
+    tried = mover_.tick();
+    return true;
+  }
+
+  Around around(Id p) const {
     const Id row = wall_.rowOf[p];
     const Vec3& x = mover_.point(p);
-    Around around;
-    around.add(x);
-    for (Id other : wall_.neighbours[row]) around.add(0.5 * (x + mover_.point(wall_.nodes[other])));
-    for (Id f : wall_.faces[row]) around.add(mover_.faceCentre(f));
+    Around points;
+    points.add(x);
+    for (Id other : wall_.neighbours[row]) points.add(0.5 * (x + mover_.point(wall_.nodes[other])));
+    for (Id f : wall_.faces[row]) points.add(mover_.faceCentre(f));
+    return points;
+  }
+
+  // A point's capped distance to the fourth power; the sum over the points is close to the largest of them
+  // but smooth.
+  double weigh(const Vec3& r) const {
+    const double distance = std::min(r.norm() / unit_, kMostChord), squared = distance * distance;
+    return squared * squared;
+  }
+
+  // Sum over the points around p; one that reaches `limit` may be too small.
+  double look(Id p, double limit = std::numeric_limits<double>::infinity()) const {
+    const Around at = around(p);
     double sum = 0;
-    for (std::size_t i = 0; i < around.count; ++i) {
-      const Vec3 r = field_.closest(around.points[i]).point - around.points[i];
-      const double distance = std::min(r.norm() / unit_, kMostChord), squared = distance * distance;
-      sum += squared * squared;
-      if (lowest == nullptr) continue;
+    for (std::size_t i = 0; i < at.count && sum < limit; ++i)
+      sum += weigh(field_.closest(at.points[i]).point - at.points[i]);
+    return sum;
+  }
+
+  // The sum, and the range of the points' signed distances along n (positive: the geometry lies outward).
+  double look(Id p, const Vec3& n, double& lowest, double& highest, double& own) const {
+    const Around at = around(p);
+    double sum = 0;
+    for (std::size_t i = 0; i < at.count; ++i) {
+      const Vec3 r = field_.closest(at.points[i]).point - at.points[i];
+      sum += weigh(r);
       const double along = r.dot(n);
-      if (i == 0) *own = along;
-      if (distance < kMostChord) {
-        *lowest = std::min(*lowest, along);
-        *highest = std::max(*highest, along);
+      if (i == 0) own = along;
+      if (r.norm() / unit_ < kMostChord) {
+        lowest = std::min(lowest, along);
+        highest = std::max(highest, along);
       }
     }
     return sum;
@@ -100,6 +129,7 @@ class WallFitter {
   const WallSurface& wall_;
   const DistanceField& field_;
   const double unit_;
+  std::vector<Id> fitTried_, searchTried_;  // #W tick of the last attempt
 };
 
 }  // namespace

@@ -140,4 +140,52 @@ TEST(NodeMover, PointsOfAColourTouchNothingInCommon) {
   EXPECT_EQ(count, all.size());
 }
 
+TEST(NodeMover, WhatFailedFailsAgainUntilSomethingAroundItMoves) {
+  const auto model = cylinder(40).model();
+  Monitor monitor;
+  PolyMesh mesh = dummyLayer(front(*model, 0.15, false), {}, monitor);
+  NodeMover mover(mesh, {});
+  std::vector<Vec3> targets = mesh.points;
+  for (Vec3& t : targets) t += Vec3(0.08, 0.06, -0.04);
+  std::vector<Id> all(mesh.points.size()), failedAt(mesh.points.size(), 0);
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<Id>(i);
+  const auto groups = mover.colour(all);
+  const auto sweep = [&] {
+    mover.forEach(groups, [&](Id p) { failedAt[p] = mover.move(p, targets[p]) ? 0 : mover.tick(); });
+  };
+  const auto isStirred = [&](Id p) { return failedAt[p] > 0 && mover.lastChange(p) >= failedAt[p]; };
+  sweep();
+  EXPECT_GT(std::count_if(all.begin(), all.end(), isStirred), 0);
+  for (int k = 0; k < 4; ++k) sweep();
+  int still = 0;
+  for (Id p : all) {
+    if (failedAt[p] == 0 || isStirred(p)) continue;
+    ++still;
+    EXPECT_FALSE(mover.move(p, targets[p]));
+  }
+  EXPECT_GT(still, 0);
+}
+
+TEST(NodeMover, ARefusedMoveIsSeenInPlaceAndUndone) {
+  const auto model = cylinder(40).model();
+  Monitor monitor;
+  PolyMesh mesh = dummyLayer(front(*model, 0.15, false), {}, monitor);
+  NodeMover mover(mesh, {});
+  int asked = 0;
+  for (Id p = 0; p < static_cast<Id>(mesh.points.size()); ++p) {
+    const Vec3 from = mesh.points[p], to = from + Vec3(0.01, 0, 0);
+    const Id f = mover.facesOf(p)[0];
+    const Vec3 centre = mover.faceCentre(f);
+    EXPECT_FALSE(mover.moveIf(p, to, [&] {
+      ++asked;
+      EXPECT_EQ(mover.point(p), to);
+      EXPECT_EQ(mover.faceCentre(f), measureFace(mesh.points, mesh.faces[f]).centre);
+      return false;
+    }));
+    EXPECT_EQ(mover.point(p), from);
+    EXPECT_EQ(mover.faceCentre(f), centre);
+  }
+  EXPECT_GT(asked, 1000);
+}
+
 }  // namespace
