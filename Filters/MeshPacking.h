@@ -43,4 +43,12 @@ void packBoundary(const PolyMesh& mesh, vtkPolyData* surface);
 PolyMesh unpackMesh(vtkUnstructuredGrid* grid, const std::string& filter,
                     std::initializer_list<Stage> accepted);
 
+/// Whether the grid carries the stamp of packMesh.
+bool isPacked(vtkUnstructuredGrid* grid);
+
+/// Points and cells of any grid of tetrahedra, pyramids, wedges, hexahedra, voxels and polyhedra, to be
+/// looked at: one patch "boundary", no arrays, no finest size, Stage::None. Throws InputError for other cells
+/// and when cells overlap.
+PolyMesh unpackCells(vtkUnstructuredGrid* grid, const std::string& filter);
+
 }  // namespace pm

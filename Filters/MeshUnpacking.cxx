@@ -258,19 +258,30 @@ void readArrays(vtkUnstructuredGrid* grid, PolyMesh& mesh, const std::string& fi
 
 }  // namespace
 
-PolyMesh unpackMesh(vtkUnstructuredGrid* grid, const std::string& filter,
-                    std::initializer_list<Stage> accepted) {
-  const Stamp stamp = readStamp(grid, filter, accepted);
+bool isPacked(vtkUnstructuredGrid* grid) {
+  return grid->GetFieldData()->HasArray("ProjectionMesherStamp") != 0;
+}
+
+PolyMesh unpackCells(vtkUnstructuredGrid* grid, const std::string& filter) {
   PolyMesh mesh;
-  mesh.stage = stamp.stage;
   mesh.cellCount = static_cast<Id>(grid->GetNumberOfCells());
+  if (mesh.cellCount == 0) throw InputError(filter + ": the input grid has no cells.");
   const Id points = static_cast<Id>(grid->GetNumberOfPoints());
   mesh.points.resize(points);
   tbb::parallel_for(Id(0), points, [&](Id p) { grid->GetPoints()->GetPoint(p, mesh.points[p].data()); });
-
   const HalfFaces half = readHalfFaces(CellReader(grid, filter), mesh.cellCount);
   joinHalfFaces(half, matchHalfFaces(half, byFirstPoint(half, points), filter), mesh);
+  mesh.patchNames = {"boundary"};
+  mesh.patchTypes = {"patch"};
   canonicalise(mesh);
+  return mesh;
+}
+
+PolyMesh unpackMesh(vtkUnstructuredGrid* grid, const std::string& filter,
+                    std::initializer_list<Stage> accepted) {
+  const Stamp stamp = readStamp(grid, filter, accepted);
+  PolyMesh mesh = unpackCells(grid, filter);
+  mesh.stage = stamp.stage;
   if (mesh.boundaryFaces() != stamp.boundaryFaces) refuseChanged(filter, "its boundary has changed");
   readArrays(grid, mesh, filter);
   if (checksum(mesh) != stamp.sum) {

@@ -75,6 +75,12 @@ double internalSkewness(const std::vector<Vec3>& points, Span<Id> row, const Fac
 double boundarySkewness(const std::vector<Vec3>& points, Span<Id> row, const FaceMeasures& face,
                         const Vec3& ownerCentre);
 
+/// Whether a value is within a limit; upper: the limit is the largest allowed value. What is not a number is
+/// not, and a value equal to a lower limit of zero is not: a cell of no volume is no cell.
+inline bool withinLimit(double value, double limit, bool upper) {
+  return upper ? value <= limit : limit > 0 ? value >= limit : value > limit;
+}
+
 /// Whole-mesh measures; parallel, deterministic.
 struct MeshMeasures {
   std::vector<FaceMeasures> faces;

@@ -1,149 +1,227 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Measures against limits: the summary and the sentences about what is violated.
-#include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
+#include "MeshQualityReport.h"
 
+#include <algorithm>
 #include <cmath>
-#include <string>
-#include <vector>
-
-#include "MeshQuality.h"
+#include <numeric>
 
 namespace pm {
 namespace {
 
-constexpr double kClosed = 1e-6;  // openness is stored as float; anything topological is far larger
+constexpr double kClosed = 1e-6;
+constexpr double kDecades = 1e3;  // a histogram over more than this is one of ratios
 
 double volumeUnit(const PolyMesh& mesh) {
   return mesh.finestSize > 0 ? mesh.finestSize * mesh.finestSize * mesh.finestSize : 1.0;
 }
 
-/// Sum of volumes in fixed blocks: the same bits for any number of threads.
-double totalVolume(const std::vector<CellMeasures>& cells) {
-  constexpr std::size_t kBlock = 4096;
-  std::vector<double> sums((cells.size() + kBlock - 1) / kBlock, 0.0);
-  tbb::parallel_for(std::size_t(0), sums.size(), [&](std::size_t i) {
-    const std::size_t last = std::min(cells.size(), (i + 1) * kBlock);
-    for (std::size_t c = i * kBlock; c < last; ++c) sums[i] += cells[c].volume;
-  });
-  double total = 0;
-  for (double sum : sums) total += sum;
-  return total;
-}
+/// Adds measures to a report, with their means and what is outside.
+class Lister {
+ public:
+  Lister(const PolyMesh& mesh, MeshQualityReport& report) : mesh_(mesh), report_(report) {}
 
-/// One limit, how many faces or cells break it, and the worst of them.
-struct Criterion {
-  const char* what;   // "internal faces"
-  const char* value;  // "angle"
-  bool upper;         // the limit is the largest allowed value
-  double limit;
-  Id first, last;  // rows it applies to
-  Id outside = 0, worst = kNone;
-  double worstValue = 0;
-
-  /// Written so that a value that is not a number is outside. A value equal to a limit of zero from below is
-  /// outside too: a cell of no volume is no cell.
-  bool holds(double v) const { return upper ? v <= limit : limit > 0 ? v >= limit : v > limit; }
-  bool worse(double v) const {
-    if (worst == kNone) return true;
-    return !std::isnan(worstValue) && !(upper ? v <= worstValue : v >= worstValue);
+  template <class Value>
+  void cells(const char* name, bool upper, double limit, const Value& value) {
+    add(name, true, upper, limit, 0, mesh_.cellCount, value);
   }
-  double severity() const {
-    if (upper) return worstValue / limit;
-    return worstValue > 0 ? limit / worstValue : std::numeric_limits<double>::infinity();
+  template <class Value>
+  void faces(const char* name, bool upper, double limit, const Value& value) {
+    add(name, false, upper, limit, 0, mesh_.faceCount(), value);
   }
-};
+  template <class Value>
+  void internal(const std::string& name, bool upper, double limit, const Value& value) {
+    add(name, false, upper, limit, 0, mesh_.internalFaces(), value);
+  }
+  template <class Value>
+  void boundary(const std::string& name, bool upper, double limit, const Value& value) {
+    add(name, false, upper, limit, mesh_.internalFaces(), mesh_.faceCount(), value);
+  }
+  QualityMeasure& last() { return report_.measures.back(); }
 
-template <class Value>
-void scan(Criterion& criterion, std::vector<std::uint8_t>& outside, const Value& value) {
-  for (Id i = criterion.first; i < criterion.last; ++i) {
-    const double v = value(i);
-    if (criterion.worse(v)) {
-      criterion.worst = i;
-      criterion.worstValue = v;
+ private:
+  template <class Value>
+  void add(const std::string& name, bool ofCells, bool upper, double limit, Id first, Id last,
+           const Value& value) {
+    QualityMeasure m;
+    m.name = name;
+    m.ofCells = ofCells;
+    m.upper = upper;
+    m.limit = limit;
+    m.first = first;
+    m.values.reserve(last - first);
+    for (Id i = first; i < last; ++i) {
+      m.values.push_back(value(i));
+      m.outside += !m.holds(m.values.back());
     }
-    if (criterion.holds(v)) continue;
-    ++criterion.outside;
-    outside[i] = 1;
+    const double sum = std::accumulate(m.values.begin(), m.values.end(), 0.0);
+    m.mean = m.values.empty() ? 0 : sum / static_cast<double>(m.values.size());
+    report_.measures.push_back(std::move(m));
   }
-}
 
-enum { kVolume, kTet, kPyramid, kOpen, kEtaIn, kEtaOut, kAngleIn, kAngleOut, kWarp, kSkewIn, kSkewOut };
-
-struct Scan {
-  std::vector<Criterion> criteria;
-  Id violations = 0;
+  const PolyMesh& mesh_;
+  MeshQualityReport& report_;
 };
 
-Scan scanAll(const PolyMesh& mesh, const MeshMeasures& m, const QualityLimits& limits) {
-  const Id faces = mesh.faceCount(), internal = mesh.internalFaces(), cells = mesh.cellCount;
+void listThesis(Lister& list, const PolyMesh& mesh, const MeshMeasures& m, const QualityLimits& limits) {
   const double unit = volumeUnit(mesh);
-  Scan s;
-  s.criteria = {{"cells", "volume in finest cells", false, limits.minVolume, 0, cells},
-                {"cells", "smallest central tetrahedron in finest cells", false, limits.minTet, 0, cells},
-                {"cells", "smallest face pyramid in finest cells", false, limits.minTet, 0, cells},
-                {"cells", "openness", true, kClosed, 0, cells},
-                {"internal faces", "degradation", false, limits.minEtaInternal, 0, internal},
-                {"boundary faces", "degradation", false, limits.minEtaBoundary, internal, faces},
-                {"internal faces", "angle in degrees", true, limits.maxAngleInternal, 0, internal},
-                {"boundary faces", "angle in degrees", true, limits.maxAngleBoundary, internal, faces},
-                {"faces", "warpage in degrees", true, limits.maxWarpage, 0, faces},
-                {"internal faces", "skewness", true, limits.maxSkewInternal, 0, internal},
-                {"boundary faces", "skewness", true, limits.maxSkewBoundary, internal, faces}};
-  std::vector<std::uint8_t> badCell(cells, 0), badFace(faces, 0);
-  scan(s.criteria[kVolume], badCell, [&](Id c) { return m.cells[c].volume / unit; });
-  scan(s.criteria[kTet], badCell, [&](Id c) { return m.cells[c].minTet / unit; });
-  scan(s.criteria[kPyramid], badCell, [&](Id c) { return m.cells[c].minPyramid / unit; });
-  scan(s.criteria[kOpen], badCell, [&](Id c) { return m.openness[c]; });
-  for (int i : {kEtaIn, kEtaOut}) scan(s.criteria[i], badFace, [&](Id f) { return m.faces[f].eta; });
-  for (int i : {kAngleIn, kAngleOut}) scan(s.criteria[i], badFace, [&](Id f) { return m.faceAngle[f]; });
-  scan(s.criteria[kWarp], badFace, [&](Id f) { return m.faces[f].warpage; });
-  for (int i : {kSkewIn, kSkewOut}) scan(s.criteria[i], badFace, [&](Id f) { return m.faceSkew[f]; });
-  for (std::uint8_t bad : badCell) s.violations += bad;
-  for (std::uint8_t bad : badFace) s.violations += bad;
-  return s;
+  list.cells("Volume", false, limits.minVolume, [&](Id c) { return m.cells[c].volume / unit; });
+  list.cells("CentralTet", false, limits.minTet, [&](Id c) { return m.cells[c].minTet / unit; });
+  list.cells("FacePyramid", false, limits.minTet, [&](Id c) { return m.cells[c].minPyramid / unit; });
+  list.cells("Openness", true, kClosed, [&](Id c) { return m.openness[c]; });
+  const auto eta = [&](Id f) { return m.faces[f].eta; };
+  const auto angle = [&](Id f) { return m.faceAngle[f]; };
+  list.internal("EtaInternal", false, limits.minEtaInternal, eta);
+  list.boundary("EtaBoundary", false, limits.minEtaBoundary, eta);
+  list.internal("AngleInternal", true, limits.maxAngleInternal, angle);
+  list.boundary("AngleBoundary", true, limits.maxAngleBoundary, angle);
+  list.faces("Warpage", true, limits.maxWarpage, [&](Id f) { return m.faces[f].warpage; });
+}
+
+void listFoam(Lister& list, const MeshMeasures& m, const FoamMeasures& foam, const QualityLimits& limits,
+              const FoamLimits& extra) {
+  const auto of = [](const std::vector<double>& values) { return [&values](Id i) { return values[i]; }; };
+  list.internal("SkewInternal", true, limits.maxSkewInternal, of(foam.skewness));
+  list.boundary("SkewBoundary", true, limits.maxSkewBoundary, of(foam.skewness));
+  list.internal("NonOrthogonality", true, extra.maxNonOrthogonality, of(foam.nonOrthogonality));
+  list.last().mean = foam.meanNonOrthogonality;
+  list.internal("FaceWeight", false, extra.minFaceWeight, of(foam.weight));
+  list.internal("VolumeRatio", false, extra.minVolumeRatio, of(foam.volumeRatio));
+  list.faces("FaceArea", false, 0, [&](Id f) { return m.faces[f].normal.norm(); });
+  list.faces("Flatness", false, extra.minFlatness, of(foam.flatness));
+  list.last().mean = foam.meanFlatness;
+  list.faces("FaceConcavity", true, extra.maxFaceConcavity, of(foam.concavity));
+  list.faces("FaceTet", false, extra.minFaceTet, of(foam.tet));
+  list.cells("AspectRatio", true, extra.maxAspectRatio, [&](Id c) { return foam.cells[c].aspectRatio; });
+  list.cells("Determinant", false, extra.minDeterminant, [&](Id c) { return foam.cells[c].determinant; });
+  list.cells("CellConcavity", true, extra.maxCellConcavity, [&](Id c) { return foam.cells[c].concavity; });
+}
+
+QualityPlace placeOf(const PolyMesh& mesh, const MeshMeasures& m, const QualityMeasure& measure, Id row) {
+  QualityPlace place;
+  place.value = measure.values[row];
+  const Id id = measure.first + row;
+  if (measure.ofCells) {
+    place.cell = id;
+    place.position = m.cells[id].centre;
+    return place;
+  }
+  place.face = id;
+  place.cell = mesh.owner[id];
+  place.position = m.faces[id].centre;
+  if (id < mesh.internalFaces()) {
+    place.neighbour = mesh.neighbour[id];
+  } else {
+    place.patch = mesh.patch[id - mesh.internalFaces()];
+  }
+  return place;
+}
+
+void addWorst(const PolyMesh& mesh, const MeshMeasures& m, Id index, Id wanted, MeshQualityReport& report) {
+  const QualityMeasure& measure = report.measures[index];
+  std::vector<Id> order(measure.values.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto last = order.begin() + std::min<std::ptrdiff_t>(wanted, order.end() - order.begin());
+  std::partial_sort(order.begin(), last, order.end(), [&](Id a, Id b) {
+    const double x = measure.values[a], y = measure.values[b];
+    if (measure.worse(x, y)) return true;
+    return !measure.worse(y, x) && a < b;
+  });
+  for (auto row = order.begin(); row != last; ++row) {
+    report.places.push_back(placeOf(mesh, m, measure, *row));
+    report.places.back().measure = index;
+  }
 }
 
 }  // namespace
 
-QualitySummary summarise(const PolyMesh& mesh, const MeshMeasures& measures, const QualityLimits& limits) {
-  const Scan s = scanAll(mesh, measures, limits);
-  QualitySummary q;
-  const auto take = [&](double& into, int criterion) {
-    if (s.criteria[criterion].worst != kNone) into = s.criteria[criterion].worstValue;
-  };
-  take(q.minVolume, kVolume);
-  take(q.minTet, kTet);
-  take(q.minPyramid, kPyramid);
-  take(q.maxOpenness, kOpen);
-  take(q.minEtaInternal, kEtaIn);
-  take(q.minEtaBoundary, kEtaOut);
-  take(q.maxAngleInternal, kAngleIn);
-  take(q.maxAngleBoundary, kAngleOut);
-  take(q.maxWarpage, kWarp);
-  take(q.maxSkewInternal, kSkewIn);
-  take(q.maxSkewBoundary, kSkewOut);
-  q.totalVolume = totalVolume(measures.cells);
-  q.violations = s.violations;
-  return q;
+bool QualityMeasure::holds(double value) const { return withinLimit(value, limit, upper); }
+
+bool QualityMeasure::worse(double a, double b) const {
+  if (std::isnan(a) || std::isnan(b)) return std::isnan(a) && !std::isnan(b);
+  return upper ? a > b : a < b;
 }
 
-std::string describeViolations(const PolyMesh& mesh, const MeshMeasures& measures,
-                               const QualityLimits& limits) {
-  std::vector<Criterion> broken;
-  for (const Criterion& c : scanAll(mesh, measures, limits).criteria) {
-    if (c.outside > 0) broken.push_back(c);
+const QualityMeasure& MeshQualityReport::measure(const std::string& name) const {
+  for (const QualityMeasure& m : measures) {
+    if (m.name == name) return m;
   }
-  std::stable_sort(broken.begin(), broken.end(),
-                   [](const Criterion& a, const Criterion& b) { return a.severity() > b.severity(); });
-  std::string text;
-  for (const Criterion& c : broken) {
-    text += fmt::format("{} of {} {} have a {} {} {:.6g}; the worst is {:.6g} at id {}.\n", c.outside,
-                        c.last - c.first, c.what, c.value, c.upper ? "above" : "below", c.limit, c.worstValue,
-                        c.worst);
+  throw InternalError("There is no measure " + name + ".");
+}
+
+QualityHistogram histogram(const std::vector<double>& values, Id bins) {
+  QualityHistogram h;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (double v : values) {
+    if (!std::isfinite(v)) continue;
+    low = std::min(low, v);
+    high = std::max(high, v);
   }
-  return text;
+  h.counts.assign(bins, 0);
+  if (!(low <= high)) low = high = 0;
+  const bool ratios = low > 0 && high > kDecades * low;
+  const auto scale = [&](double v) { return ratios ? std::log(v) : v; };
+  const double from = scale(low), width = (scale(high) - from) / bins;
+  for (Id i = 0; i <= bins; ++i) h.edges.push_back(ratios ? std::exp(from + i * width) : from + i * width);
+  h.edges.front() = low;
+  h.edges.back() = high;
+  for (double v : values) {
+    if (!std::isfinite(v)) continue;
+    const double at = width > 0 ? (scale(v) - from) / width : 0;
+    ++h.counts[std::clamp(static_cast<Id>(at), Id(0), bins - 1)];
+  }
+  return h;
+}
+
+MeshQualityReport reportMeshQuality(const PolyMesh& mesh, const MeshQualityReportOptions& options,
+                                    Monitor& monitor) {
+  QualityLimits limits = options.limits;
+  if (mesh.stage == Stage::Refined || mesh.stage == Stage::None)
+    limits.minVolume = limits.minEtaInternal = limits.minEtaBoundary = 0;
+  MeshQualityReport report;
+  monitor.check(0.1, "measuring");
+  const MeshMeasures measures = measure(mesh);
+  const FoamMeasures foam = measureFoam(mesh, measures, options.solved, monitor);
+  monitor.check(0.7, "listing measures");
+  Lister list(mesh, report);
+  listThesis(list, mesh, measures, limits);
+  listFoam(list, measures, foam, limits, options.foam);
+  report.concaveCells = foam.concaveCells;
+  for (Id i = 0; i < static_cast<Id>(report.measures.size()); ++i) {
+    monitor.check(0.8, "finding the worst places");
+    addWorst(mesh, measures, i, options.worstPlaces, report);
+    report.histograms.push_back(histogram(report.measures[i].values, options.bins));
+  }
+  return report;
+}
+
+std::vector<float> worstOfCells(const PolyMesh& mesh, const QualityMeasure& measure) {
+  if (measure.ofCells) return {measure.values.begin(), measure.values.end()};
+  std::vector<float> worst(mesh.cellCount, std::numeric_limits<float>::quiet_NaN());
+  std::vector<std::uint8_t> seen(mesh.cellCount, 0);
+  for (std::size_t i = 0; i < measure.values.size(); ++i) {
+    const Id f = measure.first + static_cast<Id>(i);
+    const auto take = [&](Id cell) {
+      if (!seen[cell] || measure.worse(measure.values[i], worst[cell]))
+        worst[cell] = static_cast<float>(measure.values[i]);
+      seen[cell] = 1;
+    };
+    take(mesh.owner[f]);
+    if (f < mesh.internalFaces()) take(mesh.neighbour[f]);
+  }
+  return worst;
+}
+
+std::vector<Id> facesOutside(const MeshQualityReport& report) {
+  std::vector<Id> faces;
+  for (const QualityMeasure& m : report.measures) {
+    if (m.ofCells || m.outside == 0) continue;
+    for (std::size_t i = 0; i < m.values.size(); ++i) {
+      if (!m.holds(m.values[i])) faces.push_back(m.first + static_cast<Id>(i));
+    }
+  }
+  std::sort(faces.begin(), faces.end());
+  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  return faces;
 }
 
 }  // namespace pm
