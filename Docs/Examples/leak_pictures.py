@@ -26,9 +26,9 @@ from vtkmodules.vtkFiltersCore import (vtkCleanPolyData, vtkClipPolyData, vtkFea
                                        vtkTriangleFilter, vtkTubeFilter)
 from vtkmodules.vtkFiltersModeling import vtkAdaptiveSubdivisionFilter
 from vtkmodules.vtkFiltersSources import vtkSphereSource
-from vtkmodules.vtkIOImage import vtkPNGWriter
-from vtkmodules.vtkRenderingCore import (vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow,
-                                         vtkWindowToImageFilter)
+from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow
+
+from mesh_pictures import write_picture
 
 BUILT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "build", "lib", "python3", "dist-packages")
 sys.path.append(BUILT)
@@ -208,14 +208,7 @@ def picture(surface, holes, path):
         renderer = scene(surface, holes, 2 * radius, part)
         window.AddRenderer(renderer)
         look(renderer, focus, direction, radius)
-    window.Render()
-    image = vtkWindowToImageFilter()
-    image.SetInput(window)
-    image.ReadFrontBufferOff()
-    writer = vtkPNGWriter()
-    writer.SetInputConnection(image.GetOutputPort())
-    writer.SetFileName(path)
-    writer.Write()
+    write_picture(window, path)
 
 
 def main():

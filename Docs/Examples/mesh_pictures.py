@@ -235,13 +235,8 @@ def aim(renderer, points, direction, up):
     renderer.ResetCameraClippingRange()
 
 
-def save(renderer, points, direction, up, path):
-    window = vtkRenderWindow()
-    window.SetOffScreenRendering(1)
-    window.SetMultiSamples(8)
-    window.SetSize(*SIZE)
-    window.AddRenderer(renderer)
-    aim(renderer, points, direction, up)
+def write_picture(window, path):
+    """Renders a window and writes what it shows as PNG."""
     window.Render()
     image = vtkWindowToImageFilter()
     image.SetInput(window)
@@ -250,6 +245,16 @@ def save(renderer, points, direction, up, path):
     writer.SetInputConnection(image.GetOutputPort())
     writer.SetFileName(path)
     writer.Write()
+
+
+def save(renderer, points, direction, up, path):
+    window = vtkRenderWindow()
+    window.SetOffScreenRendering(1)
+    window.SetMultiSamples(8)
+    window.SetSize(*SIZE)
+    window.AddRenderer(renderer)
+    aim(renderer, points, direction, up)
+    write_picture(window, path)
 
 
 def grown(bounds, part):

@@ -11,10 +11,10 @@ from projection_mesher import ProjectionMesherFilters as pm
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkFiltersCore import vtkThreshold
 from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
-from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
-from vtkmodules.vtkRenderingCore import (vtkActor, vtkDataSetMapper, vtkRenderer, vtkRenderWindow,
-                                         vtkWindowToImageFilter)
+from vtkmodules.vtkRenderingCore import vtkActor, vtkDataSetMapper, vtkRenderer, vtkRenderWindow
+
+from mesh_pictures import write_picture
 
 matplotlib.use("Agg")
 from matplotlib import pyplot  # noqa: E402  after the choice of what draws
@@ -123,13 +123,7 @@ def draw_worst(report, measure, path):
     renderer.GetActiveCamera().Elevation(25)
     renderer.ResetCamera()
     renderer.GetActiveCamera().Zoom(1.3)
-    window.Render()
-    image = vtkWindowToImageFilter()
-    image.SetInput(window)
-    writer = vtkPNGWriter()
-    writer.SetInputConnection(image.GetOutputPort())
-    writer.SetFileName(path)
-    writer.Write()
+    write_picture(window, path)
 
 
 def main():

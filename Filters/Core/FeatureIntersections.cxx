@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "DisjointSets.h"
 #include "FeatureNetwork.h"
 #include "KnownIntersections.h"
 
@@ -101,20 +102,12 @@ class IntersectionLinks {
 
   /// Connected pieces shorter than the tolerance.
   void dropShort() {
-    std::vector<Id> root(network_.points.size());
-    std::iota(root.begin(), root.end(), 0);
-    const auto find = [&](Id p) {
-      while (root[p] != p) p = root[p] = root[root[p]];
-      return p;
-    };
-    for (const auto& link : links_) {
-      const auto [lo, hi] = std::minmax({find(link.a), find(link.b)});
-      root[hi] = lo;
-    }
+    DisjointSets pieces(network_.points.size());
+    for (const auto& link : links_) pieces.join(link.a, link.b);
     std::vector<double> length(network_.points.size(), 0.0);
-    for (const auto& link : links_) length[find(link.a)] += (at(link.b) - at(link.a)).norm();
+    for (const auto& link : links_) length[pieces.root(link.a)] += (at(link.b) - at(link.a)).norm();
     const double shortest = std::max(std::sqrt(tolerance2_), options_.shortestCurve);
-    dropWhere([&](std::size_t i) { return length[find(links_[i].a)] < shortest; });
+    dropWhere([&](std::size_t i) { return length[pieces.root(links_[i].a)] < shortest; });
   }
 
   template <class Predicate>

@@ -10,8 +10,7 @@
 namespace pm {
 
 /// What selfIntersections(model) gives, found anew only when the geometry last asked for had other content.
-/// Thread-safe. The
-/// monitor can stop the search and nothing is kept then.
+/// Thread-safe. The monitor can stop the search and nothing is kept then.
 std::shared_ptr<const SelfIntersections> knownIntersections(const SurfaceModel& model, Monitor& monitor);
 
 }  // namespace pm

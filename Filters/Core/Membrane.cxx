@@ -8,6 +8,7 @@
 #include <map>
 #include <numeric>
 
+#include "DisjointSets.h"
 #include "RimFilms.h"
 
 namespace pm {
@@ -53,26 +54,18 @@ Coord shifted(const Face& f, std::int32_t du, std::int32_t dv) {
 
 /// Faces that share a corner, directly or through others: rows of faces.
 std::vector<std::vector<Face>> connected(const std::vector<Face>& faces) {
-  std::vector<Id> parent(faces.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](Id i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
+  DisjointSets sets(faces.size());
   std::vector<std::pair<Key, Id>> corners;
   for (Id i = 0; i < static_cast<Id>(faces.size()); ++i)
     for (int k = 0; k < 4; ++k)
       corners.push_back({encode(shifted(faces[i], k & 1 ? faces[i].span : 0, k & 2 ? faces[i].span : 0)), i});
   std::sort(corners.begin(), corners.end());
   for (std::size_t k = 1; k < corners.size(); ++k)
-    if (corners[k].first == corners[k - 1].first) {
-      const Id a = root(corners[k].second), b = root(corners[k - 1].second);
-      parent[std::max(a, b)] = std::min(a, b);
-    }
+    if (corners[k].first == corners[k - 1].first) sets.join(corners[k].second, corners[k - 1].second);
   std::vector<Id> row(faces.size(), kNone);
   std::vector<std::vector<Face>> groups;
   for (Id i = 0; i < static_cast<Id>(faces.size()); ++i) {
-    const Id r = root(i);
+    const Id r = sets.root(i);
     if (row[r] == kNone) {
       row[r] = static_cast<Id>(groups.size());
       groups.emplace_back();
