@@ -10,7 +10,7 @@
 
 vtkStandardNewMacro(vtkDummyLayer);
 
-vtkDummyLayer::vtkDummyLayer() : vtkValidMeshStage(1, -1) {
+vtkDummyLayer::vtkDummyLayer() : vtkFoamLimitsStage(1, -1) {
   this->Thickness = pm::DummyLayerOptions().thickness;
 }
 

@@ -7,16 +7,16 @@
  */
 #pragma once
 
-#include "vtkValidMeshStage.h"
+#include "vtkFoamLimitsStage.h"
 
 namespace pm {
 struct DummyLayerOptions;
 }
 
-class PROJECTIONMESHERFILTERS_EXPORT vtkDummyLayer : public vtkValidMeshStage {
+class PROJECTIONMESHERFILTERS_EXPORT vtkDummyLayer : public vtkFoamLimitsStage {
  public:
   static vtkDummyLayer* New();
-  vtkTypeMacro(vtkDummyLayer, vtkValidMeshStage);
+  vtkTypeMacro(vtkDummyLayer, vtkFoamLimitsStage);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{

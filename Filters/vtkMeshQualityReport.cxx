@@ -13,16 +13,13 @@
 
 vtkStandardNewMacro(vtkMeshQualityReport);
 
-vtkMeshQualityReport::vtkMeshQualityReport() : vtkValidMeshStage(1, -1) {
+vtkMeshQualityReport::vtkMeshQualityReport() : vtkFoamLimitsStage(1, -1) {
   this->SetNumberOfOutputPorts(SUMMARY + 1);
   const pm::MeshQualityReportOptions defaults;
   this->MaximumNonOrthogonality = defaults.foam.maxNonOrthogonality;
   this->MinimumFaceTet = defaults.foam.minFaceTet;
-  this->MinimumFaceWeight = defaults.foam.minFaceWeight;
-  this->MinimumVolumeRatio = defaults.foam.minVolumeRatio;
   this->MinimumFlatness = defaults.foam.minFlatness;
   this->MaximumFaceConcavity = defaults.foam.maxFaceConcavity;
-  this->MinimumDeterminant = defaults.foam.minDeterminant;
   this->MaximumAspectRatio = defaults.foam.maxAspectRatio;
   this->MaximumCellConcavity = defaults.foam.maxCellConcavity;
   this->WorstPlaces = defaults.worstPlaces;
@@ -40,11 +37,8 @@ pm::MeshQualityReportOptions vtkMeshQualityReport::Options() const {
   options.limits = this->Limits();
   options.foam.maxNonOrthogonality = this->MaximumNonOrthogonality;
   options.foam.minFaceTet = this->MinimumFaceTet;
-  options.foam.minFaceWeight = this->MinimumFaceWeight;
-  options.foam.minVolumeRatio = this->MinimumVolumeRatio;
   options.foam.minFlatness = this->MinimumFlatness;
   options.foam.maxFaceConcavity = this->MaximumFaceConcavity;
-  options.foam.minDeterminant = this->MinimumDeterminant;
   options.foam.maxAspectRatio = this->MaximumAspectRatio;
   options.foam.maxCellConcavity = this->MaximumCellConcavity;
   if (this->EmptyDirection != NONE) options.solved[this->EmptyDirection - X] = false;
@@ -75,11 +69,8 @@ void vtkMeshQualityReport::PrintSelf(ostream& os, vtkIndent indent) {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "MaximumNonOrthogonality: " << this->MaximumNonOrthogonality << "\n";
   os << indent << "MinimumFaceTet: " << this->MinimumFaceTet << "\n";
-  os << indent << "MinimumFaceWeight: " << this->MinimumFaceWeight << "\n";
-  os << indent << "MinimumVolumeRatio: " << this->MinimumVolumeRatio << "\n";
   os << indent << "MinimumFlatness: " << this->MinimumFlatness << "\n";
   os << indent << "MaximumFaceConcavity: " << this->MaximumFaceConcavity << "\n";
-  os << indent << "MinimumDeterminant: " << this->MinimumDeterminant << "\n";
   os << indent << "MaximumAspectRatio: " << this->MaximumAspectRatio << "\n";
   os << indent << "MaximumCellConcavity: " << this->MaximumCellConcavity << "\n";
   os << indent << "EmptyDirection: " << this->EmptyDirection << "\n";

@@ -12,17 +12,17 @@
  */
 #pragma once
 
-#include "vtkValidMeshStage.h"
+#include "vtkFoamLimitsStage.h"
 
 namespace pm {
 struct MeshQualityReport;
 struct MeshQualityReportOptions;
 }  // namespace pm
 
-class PROJECTIONMESHERFILTERS_EXPORT vtkMeshQualityReport : public vtkValidMeshStage {
+class PROJECTIONMESHERFILTERS_EXPORT vtkMeshQualityReport : public vtkFoamLimitsStage {
  public:
   static vtkMeshQualityReport* New();
-  vtkTypeMacro(vtkMeshQualityReport, vtkValidMeshStage);
+  vtkTypeMacro(vtkMeshQualityReport, vtkFoamLimitsStage);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum Ports { MESH, FACES, WORST, HISTOGRAMS, SUMMARY };
@@ -41,16 +41,6 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkMeshQualityReport : public vtkValidMeshS
   vtkGetMacro(MinimumFaceTet, double);
   ///@}
   ///@{
-  /** Smallest interpolation weight of an internal face. */
-  vtkSetClampMacro(MinimumFaceWeight, double, 0.0, 0.5);
-  vtkGetMacro(MinimumFaceWeight, double);
-  ///@}
-  ///@{
-  /** Smallest ratio of the volumes of an internal face's cells. */
-  vtkSetClampMacro(MinimumVolumeRatio, double, 0.0, 1.0);
-  vtkGetMacro(MinimumVolumeRatio, double);
-  ///@}
-  ///@{
   /** Smallest ratio of a face's projected to its actual area. */
   vtkSetClampMacro(MinimumFlatness, double, 0.0, 1.0);
   vtkGetMacro(MinimumFlatness, double);
@@ -59,11 +49,6 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkMeshQualityReport : public vtkValidMeshS
   /** Largest angle by which consecutive edges of a face turn inwards, degrees. */
   vtkSetClampMacro(MaximumFaceConcavity, double, 0.0, 90.0);
   vtkGetMacro(MaximumFaceConcavity, double);
-  ///@}
-  ///@{
-  /** Smallest cell determinant. */
-  vtkSetClampMacro(MinimumDeterminant, double, 0.0, 1.0);
-  vtkGetMacro(MinimumDeterminant, double);
   ///@}
   ///@{
   /** Largest aspect ratio of a cell. */
@@ -103,11 +88,8 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkMeshQualityReport : public vtkValidMeshS
 
   double MaximumNonOrthogonality;
   double MinimumFaceTet;
-  double MinimumFaceWeight;
-  double MinimumVolumeRatio;
   double MinimumFlatness;
   double MaximumFaceConcavity;
-  double MinimumDeterminant;
   double MaximumAspectRatio;
   double MaximumCellConcavity;
   int EmptyDirection = NONE;

@@ -70,7 +70,7 @@ void addMeasures(const pm::PolyMesh& mesh, const pm::MeshMeasures& m, vtkUnstruc
                    mesh, 0.0f, [&](pm::Id f) { return m.faceAngle[f]; }, larger));
   addCellArray(grid, "Warpage",
                worstOfFaces(
-                   mesh, 0.0f, [&](pm::Id f) { return m.faces[f].warpage; }, larger));
+                   mesh, 0.0f, [&](pm::Id f) { return m.faces[f].warpage(); }, larger));
   addCellArray(grid, "Skewness",
                worstOfFaces(
                    mesh, 0.0f, [&](pm::Id f) { return m.faceSkew[f]; }, larger));

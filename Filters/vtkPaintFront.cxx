@@ -29,6 +29,7 @@ vtkPaintFront::vtkPaintFront() : vtkMeshStage(2, 1, 5), Repeated(std::make_uniqu
   this->AllowOpen = defaults.allowOpen;
   this->Fill = defaults.fill;
   this->ReportInvisible = defaults.reportInvisible;
+  this->ReportLeaks = defaults.reportLeaks;
 }
 
 vtkPaintFront::~vtkPaintFront() = default;
@@ -106,6 +107,7 @@ pm::PaintFrontOptions vtkPaintFront::Options() const {
   options.allowOpen = this->AllowOpen;
   options.fill = this->Fill;
   options.reportInvisible = this->ReportInvisible;
+  options.reportLeaks = this->ReportLeaks;
   return options;
 }
 
@@ -128,6 +130,7 @@ void vtkPaintFront::Run(vtkInformationVector** inputs, vtkUnstructuredGrid* mesh
   pm::packRegions(report, mesh);
   pm::packRegionTable(report, front, vtkTable::SafeDownCast(this->GetOutputDataObject(REGIONS)));
   pm::packInvisible(report, front, vtkPolyData::SafeDownCast(this->GetOutputDataObject(INVISIBLE)));
+  pm::packLeaks(report.leaked.leaks, vtkPolyData::SafeDownCast(this->GetOutputDataObject(LEAKS)));
 }
 
 void vtkPaintFront::ShowFailure() {
@@ -144,4 +147,5 @@ void vtkPaintFront::PrintSelf(ostream& os, vtkIndent indent) {
   os << indent << "AllowOpen: " << this->AllowOpen << "\n";
   os << indent << "Fill: " << this->Fill << "\n";
   os << indent << "ReportInvisible: " << this->ReportInvisible << "\n";
+  os << indent << "ReportLeaks: " << this->ReportLeaks << "\n";
 }

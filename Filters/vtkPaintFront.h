@@ -7,6 +7,7 @@
  * cells and their boundary faces; a table of the regions found, largest first (see RegionPacking.h for its
  * columns), and points in what is too narrow for the cells. Several regions are zones of the mesh. When a
  * region leaks there is an error, and output 4 alone holds something: the leak paths (see LeakPacking.h).
+ * There are also the ways into rooms that the mesh reaches only through openings a few cells wide.
  * Source: thesis sections 3.4.2, 3.5, 3.6.3.
  */
 #pragma once
@@ -88,6 +89,14 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkPaintFront : public vtkMeshStage {
   vtkBooleanMacro(ReportInvisible, bool);
   ///@}
 
+  ///@{
+  /** Warn of rooms that the mesh reaches only through openings a few cells wide, and show the ways into them
+   * on output port LEAKS. */
+  vtkSetMacro(ReportLeaks, bool);
+  vtkGetMacro(ReportLeaks, bool);
+  vtkBooleanMacro(ReportLeaks, bool);
+  ///@}
+
   /** The properties as the kernel takes them. */
   pm::PaintFrontOptions Options() const;
 
@@ -103,6 +112,7 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkPaintFront : public vtkMeshStage {
   bool AllowOpen;
   bool Fill;
   bool ReportInvisible;
+  bool ReportLeaks;
 
  private:
   vtkPaintFront(const vtkPaintFront&) = delete;

@@ -10,16 +10,14 @@
 
 vtkStandardNewMacro(vtkProject);
 
-vtkProject::vtkProject() : vtkValidMeshStage(2, 1) {
+vtkProject::vtkProject() : vtkFoamLimitsStage(2, 1) {
   const pm::ProjectOptions defaults;
   this->Rounds = defaults.rounds;
-  this->SmoothingSweeps = defaults.smoothingSweeps;
 }
 
 pm::ProjectOptions vtkProject::Options() const {
   pm::ProjectOptions options;
   options.rounds = this->Rounds;
-  options.smoothingSweeps = this->SmoothingSweeps;
   options.limits = this->Limits();
   return options;
 }
@@ -38,5 +36,4 @@ void vtkProject::Run(vtkInformationVector** inputs, vtkUnstructuredGrid* mesh, v
 void vtkProject::PrintSelf(ostream& os, vtkIndent indent) {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Rounds: " << this->Rounds << "\n";
-  os << indent << "SmoothingSweeps: " << this->SmoothingSweeps << "\n";
 }

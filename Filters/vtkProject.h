@@ -7,27 +7,22 @@
  */
 #pragma once
 
-#include "vtkValidMeshStage.h"
+#include "vtkFoamLimitsStage.h"
 
 namespace pm {
 struct ProjectOptions;
 }
 
-class PROJECTIONMESHERFILTERS_EXPORT vtkProject : public vtkValidMeshStage {
+class PROJECTIONMESHERFILTERS_EXPORT vtkProject : public vtkFoamLimitsStage {
  public:
   static vtkProject* New();
-  vtkTypeMacro(vtkProject, vtkValidMeshStage);
+  vtkTypeMacro(vtkProject, vtkFoamLimitsStage);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
   /** Drifting rounds; each moves a node a growing part of its way. */
   vtkSetClampMacro(Rounds, int, 1, 1000);
   vtkGetMacro(Rounds, int);
-  ///@}
-  ///@{
-  /** Front smoothing sweeps in a round. */
-  vtkSetClampMacro(SmoothingSweeps, int, 0, 1000);
-  vtkGetMacro(SmoothingSweeps, int);
   ///@}
 
   /** The properties as the kernel takes them. */
@@ -40,7 +35,6 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkProject : public vtkValidMeshStage {
            pm::Monitor& monitor) override;
 
   int Rounds;
-  int SmoothingSweeps;
 
  private:
   vtkProject(const vtkProject&) = delete;

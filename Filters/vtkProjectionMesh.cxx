@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "LeakPacking.h"
 #include "MeshPacking.h"
 #include "Pipeline.h"
 #include "RegionPacking.h"
@@ -17,15 +18,16 @@ struct vtkProjectionMesh::LastRun {
   pm::PipelineReport stages;
   std::vector<std::string> patchNames;
   std::vector<vtkIdType> patchFaces;
+  std::vector<pm::Leak> leaks;  ///< why it failed
 };
 
 vtkStandardNewMacro(vtkProjectionMesh);
 
-vtkProjectionMesh::vtkProjectionMesh() : vtkValidMeshStage(2, 0), Report(std::make_unique<LastRun>()) {
+vtkProjectionMesh::vtkProjectionMesh() : vtkFoamLimitsStage(2, 0), Report(std::make_unique<LastRun>()) {
   const pm::PipelineOptions defaults;
   this->CloseHoles = static_cast<int>(defaults.closeHoles);
   this->StopAfter = static_cast<int>(defaults.stopAfter);
-  this->SetNumberOfOutputPorts(vtkPaintFront::INVISIBLE + 1);  // those of Paint Front
+  this->SetNumberOfOutputPorts(vtkPaintFront::LEAKS + 1);  // those of Paint Front
 }
 
 vtkProjectionMesh::~vtkProjectionMesh() = default;
@@ -54,7 +56,13 @@ void vtkProjectionMesh::Run(vtkInformationVector** inputs, vtkUnstructuredGrid* 
   options.stopAfter = static_cast<pm::Stage>(this->StopAfter);
 
   const auto model = this->Surface(inputs);
-  const pm::PolyMesh result = pm::runPipeline(*model, options, monitor, &this->Report->stages);
+  pm::PolyMesh result;
+  try {
+    result = pm::runPipeline(*model, options, monitor, &this->Report->stages);
+  } catch (pm::LeakError& leak) {
+    this->Report->leaks = std::move(leak.leaks);
+    throw;
+  }
   this->Report->patchNames = result.patchNames;
   this->Report->patchFaces.assign(result.patchNames.size(), 0);
   for (pm::Id patch : result.patch) ++this->Report->patchFaces[patch];
@@ -66,6 +74,13 @@ void vtkProjectionMesh::Run(vtkInformationVector** inputs, vtkUnstructuredGrid* 
                       vtkTable::SafeDownCast(this->GetOutputDataObject(vtkPaintFront::REGIONS)));
   pm::packInvisible(front, result,
                     vtkPolyData::SafeDownCast(this->GetOutputDataObject(vtkPaintFront::INVISIBLE)));
+  pm::packLeaks(front.leaked.leaks,
+                vtkPolyData::SafeDownCast(this->GetOutputDataObject(vtkPaintFront::LEAKS)));
+}
+
+void vtkProjectionMesh::ShowFailure() {
+  pm::packLeaks(this->Report->leaks,
+                vtkPolyData::SafeDownCast(this->GetOutputDataObject(vtkPaintFront::LEAKS)));
 }
 
 int vtkProjectionMesh::FillOutputPortInformation(int port, vtkInformation* info) {

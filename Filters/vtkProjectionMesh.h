@@ -19,10 +19,10 @@
 #include "vtkProject.h"
 #include "vtkResolveFeatures.h"
 
-class PROJECTIONMESHERFILTERS_EXPORT vtkProjectionMesh : public vtkValidMeshStage {
+class PROJECTIONMESHERFILTERS_EXPORT vtkProjectionMesh : public vtkFoamLimitsStage {
  public:
   static vtkProjectionMesh* New();
-  vtkTypeMacro(vtkProjectionMesh, vtkValidMeshStage);
+  vtkTypeMacro(vtkProjectionMesh, vtkFoamLimitsStage);
   void PrintSelf(ostream& os, vtkIndent indent) override;
   vtkMTimeType GetMTime() override;
 
@@ -120,6 +120,7 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkProjectionMesh : public vtkValidMeshStag
   pmStageProperty(Front, AllowOpen, bool);
   pmStageProperty(Front, Fill, bool);
   pmStageProperty(Front, ReportInvisible, bool);
+  pmStageProperty(Front, ReportLeaks, bool);
   ///@}
 
   ///@{
@@ -131,7 +132,6 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkProjectionMesh : public vtkValidMeshStag
   /** Stage 4, see vtkProject. */
   virtual void SetProjectionRounds(int rounds) { this->Projection->SetRounds(rounds); }
   virtual int GetProjectionRounds() { return this->Projection->GetRounds(); }
-  pmStageProperty(Projection, SmoothingSweeps, int);
   ///@}
 
   ///@{
@@ -185,6 +185,7 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkProjectionMesh : public vtkValidMeshStag
   ~vtkProjectionMesh() override;
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
+  void ShowFailure() override;
   void Run(vtkInformationVector** inputs, vtkUnstructuredGrid* mesh, vtkPolyData* boundary,
            pm::Monitor& monitor) override;
 

@@ -10,7 +10,7 @@
 
 vtkStandardNewMacro(vtkResolveFeatures);
 
-vtkResolveFeatures::vtkResolveFeatures() : vtkValidMeshStage(2, 1) {
+vtkResolveFeatures::vtkResolveFeatures() : vtkFoamLimitsStage(2, 1) {
   const pm::ResolveFeaturesOptions defaults;
   this->SharpAngle = defaults.features.sharpAngle;
   this->CornerAngle = defaults.features.cornerAngle;

@@ -8,16 +8,16 @@
  */
 #pragma once
 
-#include "vtkValidMeshStage.h"
+#include "vtkFoamLimitsStage.h"
 
 namespace pm {
 struct ResolveFeaturesOptions;
 }
 
-class PROJECTIONMESHERFILTERS_EXPORT vtkResolveFeatures : public vtkValidMeshStage {
+class PROJECTIONMESHERFILTERS_EXPORT vtkResolveFeatures : public vtkFoamLimitsStage {
  public:
   static vtkResolveFeatures* New();
-  vtkTypeMacro(vtkResolveFeatures, vtkValidMeshStage);
+  vtkTypeMacro(vtkResolveFeatures, vtkFoamLimitsStage);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{

@@ -58,7 +58,7 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkValidMeshStage : public vtkMeshStage {
 
  protected:
   vtkValidMeshStage(int inputPorts, int geometryPort);
-  pm::QualityLimits Limits() const;
+  virtual pm::QualityLimits Limits() const;
 
   double MinimumVolume;
   double MinimumTet;

@@ -25,6 +25,18 @@ void eachFreeNeighbour(const Octree& tree, Id leaf, const Visit& visit) {
   }
 }
 
+/// #L 1 = one of the leaves, and so are all its free neighbours.
+std::vector<std::uint8_t> deepWithin(const Octree& tree, const std::vector<Id>& leaves) {
+  std::vector<std::uint8_t> member(tree.size(), 0), deep(tree.size(), 0);
+  for (Id leaf : leaves) member[leaf] = 1;
+  tbb::parallel_for(std::size_t(0), leaves.size(), [&](std::size_t i) {
+    bool all = true;
+    eachFreeNeighbour(tree, leaves[i], [&](Id n) { all = all && member[n]; });
+    deep[leaves[i]] = all;
+  });
+  return deep;
+}
+
 bool atSide(const Octree& tree, Id leaf) {
   const Coord c = tree.corner(leaf);
   const std::int32_t span = tree.brick.span(tree.levels[leaf]);
@@ -35,8 +47,10 @@ bool atSide(const Octree& tree, Id leaf) {
 
 }  // namespace
 
-std::vector<double> leafClearance(const Octree& tree, const SurfaceModel& model, Monitor& monitor) {
+std::vector<double> leafClearance(const Octree& tree, const SurfaceModel& model, Monitor& monitor,
+                                  const std::vector<Id>& known) {
   std::vector<double> clearance(tree.size(), -1);
+  const std::vector<std::uint8_t> skip = deepWithin(tree, known);
   for (Id first = 0; first < tree.size(); first += kLeavesACheck) {
     monitor.check(double(first) / tree.size(), "clearance");
     const Id last = std::min(tree.size(), first + kLeavesACheck);
@@ -44,6 +58,10 @@ std::vector<double> leafClearance(const Octree& tree, const SurfaceModel& model,
       Closest previous;
       for (Id leaf = first + block * kBlock; leaf < std::min(last, first + (block + 1) * kBlock); ++leaf) {
         if (tree.cut[leaf]) continue;
+        if (skip[leaf]) {
+          clearance[leaf] = 0.5 * tree.brick.edge(tree.levels[leaf]);
+          continue;
+        }
         previous = model.closest(tree.box(leaf).centre(), previous);
         clearance[leaf] = std::sqrt(previous.distance2);
       }

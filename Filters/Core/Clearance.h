@@ -17,7 +17,9 @@
 namespace pm {
 
 /// #L distance of each free leaf's centre to the geometry, length; negative for a leaf that is cut. Parallel.
-std::vector<double> leafClearance(const Octree& tree, const SurfaceModel& model, Monitor& monitor);
+/// `known` leaves all of whose free neighbours are known too are not measured: they get half their edge.
+std::vector<double> leafClearance(const Octree& tree, const SurfaceModel& model, Monitor& monitor,
+                                  const std::vector<Id>& known = {});
 
 /// #L rows: free leaves across the faces of each free leaf, in the order of sides; empty rows for cut leaves.
 Csr<Id> freeNeighbours(const Octree& tree);

@@ -350,7 +350,7 @@ MeshMeasures measureFar(const PolyMesh& mesh, Id firstCell) {
   for (Id f = 0; f < mesh.faceCount(); ++f) {
     if (mesh.owner[f] >= firstCell || (f < mesh.internalFaces() && mesh.neighbour[f] >= firstCell)) continue;
     m.faces[f].eta = 1;
-    m.faces[f].warpage = 0;
+    m.faces[f].cosWarpage = 1;
     m.faceAngle[f] = m.faceSkew[f] = 0;
   }
   return m;

@@ -143,7 +143,7 @@ FeatureDemand::Demand FeatureDemand::asNeeded(const Box& cell) const {
   std::sort(corners.begin(), corners.end());
   corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
   const bool corner = !corners.empty() && cell.contains(graph_.corners()[corners[0]]);
-  if (inside == 0 && !corner) return {};
+  if (inside == 0 && !corner && !isNear(cell, runs)) return {};
 
   bool split = corners.size() > 1 || (corners.empty() && runs.size() > 1);
   for (const Run& run : runs) {
@@ -152,7 +152,16 @@ FeatureDemand::Demand FeatureDemand::asNeeded(const Box& cell) const {
         corners.empty() || a == graph_.corners()[corners[0]] || b == graph_.corners()[corners[0]];
     split = split || !joined || turns(run) || sags(cell, run);
   }
+  if (inside == 0 && !corner) return {split ? Answer::Near : Answer::None, 1};
   return {split ? Answer::Split : Answer::Keep, corner ? std::max(inside, 1) : inside + 1};
+}
+
+bool FeatureDemand::isNear(const Box& cell, const std::vector<Run>& runs) const {
+  const Box reach = grown(cell, options_.featureBuffer * finest_);
+  for (const Run& run : runs)
+    for (Id s : run.segments)
+      if (touches(reach, graph_.segments()[s].a, graph_.segments()[s].b)) return true;
+  return false;
 }
 
 /// Compares the directions of the run's segments with that of its first one.

@@ -5,7 +5,8 @@
 // while it and its neighbours hold features that one cell cannot tell apart: two corners, two curves that do
 // not meet in a corner there, a curve that turns by more than kMostTurn, or one that leaves its chord over
 // the cell by more than kMostSag of the finest cell. What is left are cells with one straight piece of a
-// curve, or one corner and the curves from it.
+// curve, or one corner and the curves from it. Cells within featureBuffer finest cells of a feature that asks
+// follow it, as at full depth.
 #pragma once
 
 #include <vector>
@@ -45,6 +46,7 @@ class FeatureDemand {
   Demand asNeeded(const Box& cell) const;
   struct Run;
   std::vector<Run> runsNear(const Box& around, const Box& cell) const;
+  bool isNear(const Box& cell, const std::vector<Run>& runs) const;
   bool turns(const Run& run) const;
   bool sags(const Box& cell, const Run& run) const;
 

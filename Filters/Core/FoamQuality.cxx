@@ -38,28 +38,12 @@ double fanQuality(const std::vector<Vec3>& points, Span<Id> row, std::size_t bas
 
 double determinant(const PolyMesh& mesh, const MeshMeasures& measures, Span<Id> facesOfCell,
                    const Directions& solved) {
-  const auto forInternal = [&](const auto& body) {
-    for (Id f : facesOfCell) {
-      if (f < mesh.internalFaces()) body(measures.faces[f].normal);
-    }
-  };
-  double mean = 0;
-  int count = 0;
-  forInternal([&](const Vec3& area) {
-    mean += area.norm();
-    ++count;
-  });
-  if (count == 0 || mean < kTiny) return 0;
-  mean /= count;
-  Eigen::Matrix3d tensor = Eigen::Matrix3d::Zero();
-  forInternal([&](const Vec3& area) {
-    const Vec3 scaled = area / mean;
-    tensor += scaled * scaled.transpose();
-  });
-  for (int a = 0; a < 3; ++a) {
-    if (!solved[a]) tensor(a, a) = 1;
+  thread_local std::vector<Vec3> areas;
+  areas.clear();
+  for (Id f : facesOfCell) {
+    if (f < mesh.internalFaces()) areas.push_back(measures.faces[f].normal);
   }
-  return std::abs(tensor.determinant()) / 8;
+  return cellDeterminant(areas.data(), areas.size(), solved);
 }
 
 double aspectRatio(const MeshMeasures& measures, Span<Id> facesOfCell, double volume,
@@ -132,6 +116,22 @@ void takeMeans(const PolyMesh& mesh, FoamMeasures& foam) {
 
 }  // namespace
 
+double cellDeterminant(const Vec3* areas, std::size_t count, const Directions& solved) {
+  double mean = 0;
+  for (std::size_t i = 0; i < count; ++i) mean += areas[i].norm();
+  if (count == 0 || mean < kTiny) return 0;
+  mean /= static_cast<double>(count);
+  Eigen::Matrix3d tensor = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3 scaled = areas[i] / mean;
+    tensor += scaled * scaled.transpose();
+  }
+  for (int a = 0; a < 3; ++a) {
+    if (!solved[a]) tensor(a, a) = 1;
+  }
+  return std::abs(tensor.determinant()) / 8;
+}
+
 double faceWeight(const FaceMeasures& face, const Vec3& ownerCentre, const Vec3& neighbourCentre) {
   const double own = std::abs(face.normal.dot(face.centre - ownerCentre));
   const double next = std::abs(face.normal.dot(neighbourCentre - face.centre));
@@ -190,6 +190,33 @@ double faceTetQuality(const std::vector<Vec3>& points, Span<Id> row, const FaceM
     best = std::max(best, fan);
   }
   return std::min(worst, best);
+}
+
+double faceTetVolume(const std::vector<Vec3>& points, Span<Id> row, const FaceMeasures& face,
+                     const Vec3& ownerCentre, const Vec3* neighbourCentre, double enough) {
+  const std::size_t n = row.size();
+  const Vec3 toFace = face.centre - ownerCentre;
+  const Vec3 fromFace = neighbourCentre ? Vec3(*neighbourCentre - face.centre) : toFace;
+  double worst = std::numeric_limits<double>::infinity(), best = -worst;
+  Vec3 a = points[row[n - 1]] - face.centre;
+  for (Id p : row) {
+    const Vec3 b = points[p] - face.centre, normal = a.cross(b);
+    worst = std::min({worst, normal.dot(toFace), normal.dot(fromFace)});
+    a = b;
+  }
+  for (std::size_t base = 0; base < n && best <= 6 * enough; ++base) {
+    const Vec3& tip = points[row[base]];
+    const Vec3 toTip = tip - ownerCentre, fromTip = neighbourCentre ? Vec3(*neighbourCentre - tip) : toTip;
+    double fan = std::numeric_limits<double>::infinity();
+    Vec3 c = points[row[(base + 1) % n]] - tip;
+    for (std::size_t i = 2; i < n; ++i) {
+      const Vec3 d = points[row[(base + i) % n]] - tip, normal = c.cross(d);
+      fan = std::min({fan, normal.dot(toTip), normal.dot(fromTip)});
+      c = d;
+    }
+    best = std::max(best, fan);
+  }
+  return std::min(worst, best) / 6;
 }
 
 FoamCell measureFoamCell(const PolyMesh& mesh, const MeshMeasures& measures, Id cell, Span<Id> facesOfCell,

@@ -13,15 +13,12 @@
 
 namespace pm {
 
-/// checkMesh's own limits; angles in degrees.
+/// Those limits of checkMesh that are not in QualityLimits; angles in degrees.
 struct FoamLimits {
   double maxNonOrthogonality = 70;  ///< checkMesh counts faces above as severely non-orthogonal
   double minFaceTet = 1e-30;        ///< quality of a face's decomposition tetrahedra
-  double minFaceWeight = 0.05;
-  double minVolumeRatio = 0.01;
   double minFlatness = 0.8;
   double maxFaceConcavity = 10;
-  double minDeterminant = 0.001;
   double maxAspectRatio = 1000;
   double maxCellConcavity = 90;  ///< 90: any; a polyhedron with coplanar faces is concave to checkMesh
 };
@@ -47,13 +44,20 @@ double tetQuality(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 /// best. neighbourCentre: null on the boundary.
 double faceTetQuality(const std::vector<Vec3>& points, Span<Id> row, const FaceMeasures& face,
                       const Vec3& ownerCentre, const Vec3* neighbourCentre);
+/// Smallest volume of the same tetrahedra, which has the same sign and costs less. The search for a base
+/// point ends at the first one that gives more than `enough`.
+double faceTetVolume(const std::vector<Vec3>& points, Span<Id> row, const FaceMeasures& face,
+                     const Vec3& ownerCentre, const Vec3* neighbourCentre, double enough);
+
+/// Of a cell whose internal faces have these area vectors: 1 for a cube, small where the gradient is
+/// ill-posed.
+double cellDeterminant(const Vec3* areas, std::size_t count, const Directions& solved = {true, true, true});
 
 /// Measures of a cell from its faces' area vectors, the volume and which faces are internal.
 struct FoamCell {
   double aspectRatio = 1;
-  double determinant =
-      0;  ///< of the internal area vectors; 1 for a cube, small where the gradient is ill-posed
-  double concavity = 0;  ///< degrees by which a face's centre lies before another face; convex: below 0
+  double determinant = 0;  ///< cellDeterminant
+  double concavity = 0;    ///< degrees by which a face's centre lies before another face; convex: below 0
 };
 FoamCell measureFoamCell(const PolyMesh& mesh, const MeshMeasures& measures, Id cell, Span<Id> facesOfCell,
                          const Directions& solved);

@@ -117,9 +117,10 @@ bool LayerCheck::holds(const std::vector<Id>& row, const FaceMeasures& face, con
                        const CellCentres* neighbour) const {
   const bool inner = neighbour != nullptr;
   const Vec3 direction = (inner ? neighbour->thesis : face.centre) - owner.thesis;
+  if (inner && faceAngle(face.normal, neighbour->foam - owner.foam) > limits_.maxAngleInternal) return false;
   const double skew = inner ? internalSkewness(points_, span(row), face, owner.foam, neighbour->foam)
                             : boundarySkewness(points_, span(row), face, owner.foam);
-  return face.warpage <= limits_.maxWarpage &&
+  return face.warpage() <= limits_.maxWarpage &&
          faceAngle(face.normal, direction) <= (inner ? limits_.maxAngleInternal : limits_.maxAngleBoundary) &&
          skew <= (inner ? limits_.maxSkewInternal : limits_.maxSkewBoundary);
 }

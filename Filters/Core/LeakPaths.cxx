@@ -204,7 +204,8 @@ Markers chooseMarkers(const Octree& tree, const SurfaceModel& model, const std::
                       const Csr<Id>& graph, const LeakOptions& options, Monitor& monitor) {
   Markers m;
   m.clearance = clearance;
-  m.outside = outsideLeaves(tree, options.outsidePoints);
+  m.outside =
+      options.outsideLeaves.empty() ? outsideLeaves(tree, options.outsidePoints) : options.outsideLeaves;
   const std::vector<Id> given = insideLeaves(tree, options, m.outside);
   const double smallest = given.empty() ? options.smallestRoom * model.bounds().size().prod() : 0;
   Pockets found = findPockets(tree, clearance, graph, m.outside, options.roominess, smallest);
@@ -257,7 +258,7 @@ std::string describe(const std::vector<Leak>& leaks) {
 LeakSearch findLeaks(const Octree& tree, const SurfaceModel& model, const LeakOptions& options,
                      Monitor& monitor) {
   LeakSearch search;
-  const std::vector<double> clearance = leafClearance(tree, model, monitor);
+  const std::vector<double> clearance = leafClearance(tree, model, monitor, options.outsideLeaves);
   monitor.check(0.5, "flooding");
   const Csr<Id> graph = freeNeighbours(tree);
   Markers markers = chooseMarkers(tree, model, clearance, graph, options, monitor);
@@ -300,10 +301,19 @@ void throwLeak(const std::string& sentence, const Octree& tree, const SurfaceMod
 }
 
 void warnOfLargerRoom(double volume, const Octree& tree, const SurfaceModel& model, Monitor& monitor) {
-  constexpr double little = 0.1, larger = 2;
-  if (volume > little * model.bounds().size().prod()) return;
+  constexpr double little = 0.1, tiny = 1e-3, larger = 2;
+  const double box = model.bounds().size().prod();
+  if (volume > little * box) return;
   const LeakSearch search = findLeaks(tree, model, {}, monitor);
-  if (search.leaks.empty() || search.pockets.front().volume <= larger * volume) return;
+  if (search.leaks.empty() || search.pockets.front().volume <= larger * volume) {
+    if (volume < tiny * box)
+      monitor.warning(fmt::format(
+          "The enclosed region is only {:.2g}% of the box around the geometry: all else is open, or "
+          "too thin for cells of {:.4g} at the surface. Use a smaller feature size, close a wide "
+          "opening (Close Holes, with a point inside), or mesh the outside.",
+          100 * volume / box, tree.brick.edge(tree.brick.maxLevel)));
+    return;
+  }
   monitor.warning(fmt::format("The enclosed region has a volume of {:.4g}, but a room of {:.4g} leaks. {}",
                               volume, search.pockets.front().volume, describe(search.leaks)));
 }

@@ -27,6 +27,7 @@ enum class RootCells : std::uint8_t {
 struct LeakOptions {
   std::vector<Vec3> insidePoints;   ///< in rooms meant to be inside; none = rooms are found
   std::vector<Vec3> outsidePoints;  ///< none = the corners of the domain
+  std::vector<Id> outsideLeaves;    ///< free leaves known to be outside, in place of points or corners
   double roominess =
       2;  ///< found rooms: clearance in the room over clearance of its widest way out, at least
   double smallestRoom = 1e-4;  ///< found rooms: volume over that of the geometry's box, at least
@@ -78,7 +79,8 @@ std::string describe(const std::vector<Leak>& leaks);
                             Monitor& monitor);
 
 /// A warning when the enclosed region of this volume looks like a cavity beside a room that leaks: it fills
-/// little of the geometry's box, and a room behind a narrow opening is more than twice as large.
+/// little of the geometry's box, and a room behind a narrow opening is more than twice as large; or, without
+/// such a room, when it fills less than a thousandth of the box.
 void warnOfLargerRoom(double volume, const Octree& tree, const SurfaceModel& model, Monitor& monitor);
 
 }  // namespace pm

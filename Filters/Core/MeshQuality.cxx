@@ -13,7 +13,6 @@ namespace {
 
 constexpr double kDegrees = 57.295779513082320877;
 constexpr double kTiny = 1e-150;  // OpenFOAM's ROOTVSMALL
-constexpr std::size_t kLocalPoints = 32;
 
 /// Calls body(first, last) for blocks of [0, count), in parallel.
 template <class Body>
@@ -22,41 +21,94 @@ void forBlocks(Id count, const Body& body) {
                     [&](const tbb::blocked_range<Id>& range) { body(range.begin(), range.end()); });
 }
 
-/// Largest angle between two of the unit normals, eq 4-27; normals of no area are skipped.
-double largestAngle(const Vec3* normals, std::size_t count) {
-  double smallest = 1;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (normals[i].isZero(0)) continue;
-    for (std::size_t j = i + 1; j < count; ++j) {
-      if (!normals[j].isZero(0)) smallest = std::min(smallest, normals[i].dot(normals[j]));
-    }
-  }
-  return kDegrees * std::acos(std::max(-1.0, smallest));
+/// The central triangles of a face with N corners, or of any number when N is 0: triangle i lies between
+/// corners i - 1 and i. A known number lets the compiler keep a quad in registers; most faces are quads.
+template <std::size_t N>
+struct Fan {
+  std::array<Vec3, N> corner, normal;
+  std::array<double, N> area, length, edge;
+  static constexpr std::size_t size() { return N; }
+};
+template <>
+struct Fan<0> {
+  explicit Fan(std::size_t n) : corner(n), normal(n), area(n), length(n), edge(n) {}
+  std::vector<Vec3> corner, normal;
+  std::vector<double> area, length, edge;
+  std::size_t size() const { return corner.size(); }
+};
+
+template <class Fan>
+void findNormals(Fan& fan) {
+  const std::size_t n = fan.size();
+  for (std::size_t i = 0; i < n; ++i) fan.normal[i] = fan.corner[i ? i - 1 : n - 1].cross(fan.corner[i]);
+  for (std::size_t i = 0; i < n; ++i) fan.area[i] = std::sqrt(fan.normal[i].squaredNorm());
 }
 
-/// Degradation of the central triangles (4-13) and warpage (4-27); centre is relative to origin.
-void measureShape(const std::vector<Vec3>& points, Span<Id> row, const Vec3& origin, const Vec3& centre,
-                  FaceMeasures& face) {
-  const std::size_t n = row.size();
-  std::array<Vec3, kLocalPoints> local;
-  thread_local std::vector<Vec3> many;
-  if (n > kLocalPoints) many.resize(n);
-  Vec3* normals = n > kLocalPoints ? many.data() : local.data();
-
-  face.eta = std::numeric_limits<double>::infinity();
-  Vec3 a = points[row[n - 1]] - origin - centre;
-  double lengthA = a.norm();
+/// Degradation of the central triangles (4-13); corners are relative to the face's centre.
+template <class Fan>
+double degradation(Fan& fan) {
+  const std::size_t n = fan.size();
+  const auto before = [n](std::size_t i) { return i ? i - 1 : n - 1; };
+  for (std::size_t i = 0; i < n; ++i) fan.length[i] = std::sqrt(fan.corner[i].squaredNorm());
+  for (std::size_t i = 0; i < n; ++i)
+    fan.edge[i] = std::sqrt((fan.corner[i] - fan.corner[before(i)]).squaredNorm());
+  double eta = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < n; ++i) {
-    const Vec3 b = points[row[i]] - origin - centre;
-    const Vec3 twice = a.cross(b);
-    const double twiceArea = twice.norm(), lengthB = b.norm(), edge = (b - a).norm();
-    const double bound = std::max({edge, lengthA, lengthB}) * (edge + lengthA + lengthB);
-    face.eta = std::min(face.eta, bound > 0 ? 2 * std::sqrt(3.0) * twiceArea / bound : 0.0);
-    normals[i] = twiceArea > 0 ? Vec3(twice / twiceArea) : Vec3(Vec3::Zero());
-    a = b;
-    lengthA = lengthB;
+    const double a = fan.length[before(i)], b = fan.length[i], c = fan.edge[i];
+    const double bound = std::max({a, b, c}) * (a + b + c);
+    eta = std::min(eta, bound > 0 ? 2 * std::sqrt(3.0) * fan.area[i] / bound : 0.0);
   }
-  face.warpage = n > 3 ? largestAngle(normals, n) : 0;
+  return eta;
+}
+
+/// Cosine of the largest angle between the central triangles' normals (4-27); those of no area are skipped.
+template <class Fan>
+double cosineOfWarpage(Fan& fan) {
+  const std::size_t n = fan.size();
+  if (n == 3) return 1;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (fan.area[i] > 0) fan.normal[i] *= 1 / fan.area[i];
+  }
+  double smallest = 1;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = i + 1; j < n; ++j) {
+      if (fan.area[i] > 0 && fan.area[j] > 0) smallest = std::min(smallest, fan.normal[i].dot(fan.normal[j]));
+    }
+  }
+  return std::max(-1.0, smallest);
+}
+
+template <class Fan>
+FaceMeasures measureFan(const std::vector<Vec3>& points, Span<Id> row, bool quick, Fan& fan) {
+  const std::size_t n = fan.size();
+  const Vec3 origin = points[row[0]];
+  Vec3 average = Vec3::Zero();
+  for (std::size_t i = 0; i < n; ++i) {
+    fan.corner[i] = points[row[i]] - origin;
+    average += fan.corner[i];
+  }
+  average /= static_cast<double>(n);
+  for (std::size_t i = 0; i < n; ++i) fan.corner[i] -= average;
+  findNormals(fan);
+
+  FaceMeasures face;
+  Vec3 moment = Vec3::Zero();
+  double area = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    face.normal += fan.normal[i];
+    moment += fan.area[i] * (fan.corner[i ? i - 1 : n - 1] + fan.corner[i]);
+    area += fan.area[i];
+  }
+  face.normal *= 0.5;
+  const Vec3 shift = area > 0 ? Vec3(moment / (3 * area)) : Vec3(Vec3::Zero());
+  face.centre = origin + (average + shift);
+  if (quick) return face;
+
+  for (std::size_t i = 0; i < n; ++i) fan.corner[i] -= shift;
+  findNormals(fan);
+  face.eta = degradation(fan);
+  face.cosWarpage = cosineOfWarpage(fan);
+  return face;
 }
 
 /// Different points of the faces, ascending.
@@ -99,31 +151,20 @@ double skewness(const std::vector<Vec3>& points, Span<Id> row, const FaceMeasure
 }  // namespace
 
 FaceMeasures measureFace(const std::vector<Vec3>& points, Span<Id> row, bool quick) {
-  const std::size_t n = row.size();
-  const Vec3 origin = points[row[0]];
-  Vec3 average = Vec3::Zero();
-  for (Id p : row) average += points[p] - origin;
-  average /= static_cast<double>(n);
-
-  FaceMeasures face;
-  Vec3 moment = Vec3::Zero();
-  double area = 0;
-  Vec3 a = points[row[n - 1]] - origin - average;
-  for (Id p : row) {
-    const Vec3 b = points[p] - origin - average;
-    const Vec3 twice = a.cross(b);
-    const double twiceArea = twice.norm();
-    face.normal += twice;
-    moment += twiceArea * (a + b);
-    area += twiceArea;
-    a = b;
+  const auto measureWith = [&](auto fan) { return measureFan(points, row, quick, fan); };
+  switch (row.size()) {
+    case 3:
+      return measureWith(Fan<3>());
+    case 4:
+      return measureWith(Fan<4>());
+    case 5:
+      return measureWith(Fan<5>());
+    default:
+      return measureWith(Fan<0>(row.size()));
   }
-  face.normal *= 0.5;
-  const Vec3 centre = area > 0 ? Vec3(average + moment / (3 * area)) : average;
-  face.centre = origin + centre;
-  if (!quick) measureShape(points, row, origin, centre, face);
-  return face;
 }
+
+double FaceMeasures::warpage() const { return kDegrees * std::acos(cosWarpage); }
 
 Csr<Id> cellPoints(const PolyMesh& mesh) {
   const Csr<Id> facesOfCell = cellFaces(mesh);

@@ -19,8 +19,11 @@ struct QualityLimits {
   double maxAngleInternal = 70;  ///< face normal against the line between cell centres
   double maxAngleBoundary = 72;
   double maxWarpage = 72;
-  double maxSkewInternal = 3.8;  ///< OpenFOAM's definition; checkMesh fails at 4
-  double maxSkewBoundary = 3.8;  ///< checkMesh draws no line between the two
+  double maxSkewInternal = 3.8;   ///< OpenFOAM's definition; checkMesh fails at 4
+  double maxSkewBoundary = 3.8;   ///< checkMesh draws no line between the two
+  double minFaceWeight = 0.05;    ///< OpenFOAM's: 1/2 for a face midway between its cells
+  double minVolumeRatio = 0.01;   ///< smaller over larger of a face's cells
+  double minDeterminant = 0.001;  ///< OpenFOAM's, of a cell's internal faces: 1 for a cube
 };
 
 /// Worst values found in a mesh.
@@ -38,10 +41,11 @@ struct FaceMeasures {
   Vec3 centre = Vec3::Zero();  ///< eq 4-8
   Vec3 normal = Vec3::Zero();  ///< eq 4-9, length = projected area
   double eta = 0;              ///< smallest degradation of the central triangles, eq 4-13
-  double warpage = 0;          ///< degrees, eq 4-27
+  double cosWarpage = 1;       ///< cosine of eq 4-27
+  double warpage() const;      ///< degrees, eq 4-27
 };
 
-/// points: the mesh's; row: the face's point ids. quick = true leaves eta and warpage at 0.
+/// points: the mesh's; row: the face's point ids. quick = true leaves eta at 0 and cosWarpage at 1.
 FaceMeasures measureFace(const std::vector<Vec3>& points, Span<Id> row, bool quick = false);
 
 struct CellMeasures {

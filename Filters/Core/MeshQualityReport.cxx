@@ -74,7 +74,7 @@ void listThesis(Lister& list, const PolyMesh& mesh, const MeshMeasures& m, const
   list.boundary("EtaBoundary", false, limits.minEtaBoundary, eta);
   list.internal("AngleInternal", true, limits.maxAngleInternal, angle);
   list.boundary("AngleBoundary", true, limits.maxAngleBoundary, angle);
-  list.faces("Warpage", true, limits.maxWarpage, [&](Id f) { return m.faces[f].warpage; });
+  list.faces("Warpage", true, limits.maxWarpage, [&](Id f) { return m.faces[f].warpage(); });
 }
 
 void listFoam(Lister& list, const MeshMeasures& m, const FoamMeasures& foam, const QualityLimits& limits,
@@ -84,15 +84,15 @@ void listFoam(Lister& list, const MeshMeasures& m, const FoamMeasures& foam, con
   list.boundary("SkewBoundary", true, limits.maxSkewBoundary, of(foam.skewness));
   list.internal("NonOrthogonality", true, extra.maxNonOrthogonality, of(foam.nonOrthogonality));
   list.last().mean = foam.meanNonOrthogonality;
-  list.internal("FaceWeight", false, extra.minFaceWeight, of(foam.weight));
-  list.internal("VolumeRatio", false, extra.minVolumeRatio, of(foam.volumeRatio));
+  list.internal("FaceWeight", false, limits.minFaceWeight, of(foam.weight));
+  list.internal("VolumeRatio", false, limits.minVolumeRatio, of(foam.volumeRatio));
   list.faces("FaceArea", false, 0, [&](Id f) { return m.faces[f].normal.norm(); });
   list.faces("Flatness", false, extra.minFlatness, of(foam.flatness));
   list.last().mean = foam.meanFlatness;
   list.faces("FaceConcavity", true, extra.maxFaceConcavity, of(foam.concavity));
   list.faces("FaceTet", false, extra.minFaceTet, of(foam.tet));
   list.cells("AspectRatio", true, extra.maxAspectRatio, [&](Id c) { return foam.cells[c].aspectRatio; });
-  list.cells("Determinant", false, extra.minDeterminant, [&](Id c) { return foam.cells[c].determinant; });
+  list.cells("Determinant", false, limits.minDeterminant, [&](Id c) { return foam.cells[c].determinant; });
   list.cells("CellConcavity", true, extra.maxCellConcavity, [&](Id c) { return foam.cells[c].concavity; });
 }
 

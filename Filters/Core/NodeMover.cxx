@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "FoamQuality.h"
+
 namespace pm {
 namespace {
 
@@ -32,7 +34,7 @@ struct NodeMover::Touched {
   std::vector<Id> faces;   // all faces of those cells: their angle changes
   // As they were; as many as have been touched so far.
   std::vector<FaceMeasures> oldShapes;
-  std::vector<CellMeasures> oldCells;
+  std::vector<CellState> oldCells;
   std::vector<FaceState> oldFaces;
   std::vector<Vec3> oldPoints;
 };
@@ -43,9 +45,13 @@ NodeMover::NodeMover(PolyMesh& mesh, const QualityLimits& limits, const Monitor*
       limits_(limits),
       cosInternal_(std::cos(limits.maxAngleInternal * kDegree)),
       cosBoundary_(std::cos(limits.maxAngleBoundary * kDegree)),
+      cosWarpage_(std::cos(limits.maxWarpage * kDegree)),
       minVolume_(limits.minVolume * std::pow(mesh.finestSize, 3)),
       // A hair above zero, so that no tetrahedron is flat to rounding.
       minTet_(std::max(limits.minTet, 1e-6) * std::pow(mesh.finestSize, 3)),
+      // The same for what is kept in single precision.
+      minWeight_(limits.minFaceWeight * (1 + 1e-6)),
+      minRatio_(limits.minVolumeRatio * (1 + 1e-6)),
       faces_(mesh.faceCount()),
       cells_(mesh.cellCount),
       pointCells_(pointCells(mesh)),
@@ -59,13 +65,31 @@ NodeMover::NodeMover(PolyMesh& mesh, const QualityLimits& limits, const Monitor*
   tbb::parallel_for(Id(0), mesh.faceCount(), [&](Id f) { relate(f); });
 }
 
+NodeMover::CellState NodeMover::cellNow(Id c) const {
+  CellState cell;
+  measureShape(c, cell);
+  cell.determinant = determinant(c);
+  return cell;
+}
+
+double NodeMover::determinant(Id c) const {
+  std::array<Vec3, kMostCorners> areas;
+  std::size_t count = 0;
+  for (Id f : cellFaces_[c])
+    if (isInternal(f) && count < kMostCorners) areas[count++] = faces_[f].shape.normal;
+  return cellDeterminant(areas.data(), count);
+}
+
 // measureCell() with what is known of the faces already: one cross product for each central triangle.
-CellMeasures NodeMover::cellNow(Id c) const {
+void NodeMover::measureShape(Id c, CellState& cell) const {
   const Span<Id> faces = cellFaces_[c];
   const auto centreOf = [&](Id f) -> const Vec3& { return faces_[f].shape.centre; };
   std::size_t corners = 0;
   for (Id f : faces) corners += mesh_.faces[f].size();
-  if (corners > kMostCorners) return measureCell(mesh_, c, faces, cellPoints_[c], centreOf);
+  if (corners > kMostCorners) {
+    static_cast<CellMeasures&>(cell) = measureCell(mesh_, c, faces, cellPoints_[c], centreOf);
+    return;
+  }
 
   const Vec3 origin = mesh_.points[cellPoints_[c][0]];
   const double faceCount = static_cast<double>(faces.size());
@@ -97,7 +121,6 @@ CellMeasures NodeMover::cellNow(Id c) const {
       a = b;
     }
   }
-  CellMeasures cell;
   const Vec3 centre = volume != 0 ? Vec3(average + moment / (4 * volume)) : average;
   const Vec3 foamCentre = foamVolume != 0 ? Vec3(foamMoment / foamVolume) : estimate;
   cell.volume = volume;
@@ -112,20 +135,26 @@ CellMeasures NodeMover::cellNow(Id c) const {
     for (std::size_t end = k + mesh_.faces[f].size(); k < end; ++k)
       cell.minTet = std::min(cell.minTet, triangles[k].dot(apex) / 6);
   }
-  return cell;
 }
 
-// Angle and skewness of a face from the current centres.
+// What lies between a face and its cells, from the current centres.
 void NodeMover::relate(Id f) {
   FaceState& s = faces_[f];
+  const Span<Id> row = mesh_.faces[f];
   const CellMeasures& own = cells_[mesh_.owner[f]];
-  if (f < mesh_.internalFaces()) {
+  if (isInternal(f)) {
     const CellMeasures& next = cells_[mesh_.neighbour[f]];
-    s.cosAngle = cosine(s.shape.normal, next.centre - own.centre);
-    s.skew = internalSkewness(mesh_.points, mesh_.faces[f], s.shape, own.foamCentre, next.foamCentre);
+    s.cosAngle = std::min(cosine(s.shape.normal, next.centre - own.centre),
+                          cosine(s.shape.normal, next.foamCentre - own.foamCentre));
+    s.skew = internalSkewness(mesh_.points, row, s.shape, own.foamCentre, next.foamCentre);
+    s.weight = static_cast<float>(faceWeight(s.shape, own.foamCentre, next.foamCentre));
+    s.volumeRatio = static_cast<float>(pm::volumeRatio(own.volume, next.volume));
+    s.tet = static_cast<float>(
+        faceTetVolume(mesh_.points, row, s.shape, own.foamCentre, &next.foamCentre, minTet_));
   } else {
     s.cosAngle = cosine(s.shape.normal, s.shape.centre - own.centre);
-    s.skew = boundarySkewness(mesh_.points, mesh_.faces[f], s.shape, own.foamCentre);
+    s.skew = boundarySkewness(mesh_.points, row, s.shape, own.foamCentre);
+    s.tet = static_cast<float>(faceTetVolume(mesh_.points, row, s.shape, own.foamCentre, nullptr, minTet_));
   }
 }
 
@@ -133,30 +162,37 @@ bool NodeMover::faceShapeHolds(Id f, const FaceMeasures& old) const {
   const FaceMeasures& now = faces_[f].shape;
   const double minEta = f < mesh_.internalFaces() ? limits_.minEtaInternal : limits_.minEtaBoundary;
   return (now.eta >= minEta || now.eta >= old.eta) &&
-         (now.warpage <= limits_.maxWarpage || now.warpage <= old.warpage);
+         (now.cosWarpage >= cosWarpage_ || now.cosWarpage >= old.cosWarpage);
 }
 
 bool NodeMover::faceAngleHolds(Id f, const FaceState& old) const {
   const FaceState& now = faces_[f];
-  const bool internal = f < mesh_.internalFaces();
+  const bool internal = isInternal(f);
   const double minCos = internal ? cosInternal_ : cosBoundary_;
   const double maxSkew = internal ? limits_.maxSkewInternal : limits_.maxSkewBoundary;
   return (now.cosAngle >= minCos || now.cosAngle >= old.cosAngle) &&
-         (now.skew <= maxSkew || now.skew <= old.skew);
+         (now.skew <= maxSkew || now.skew <= old.skew) &&
+         (now.weight >= minWeight_ || now.weight >= old.weight) &&
+         (now.volumeRatio >= minRatio_ || now.volumeRatio >= old.volumeRatio) &&
+         (now.tet >= minTet_ || now.tet >= old.tet);
 }
 
-bool NodeMover::cellHolds(const CellMeasures& now, const CellMeasures& old) const {
+bool NodeMover::cellHolds(const CellState& now, const CellState& old) const {
   return (now.volume >= minVolume_ || now.volume >= old.volume) &&
          (now.minTet >= minTet_ || now.minTet >= old.minTet) &&
-         (now.minPyramid >= minTet_ || now.minPyramid >= old.minPyramid);
+         (now.minPyramid >= minTet_ || now.minPyramid >= old.minPyramid) &&
+         (now.determinant >= limits_.minDeterminant || now.determinant >= old.determinant);
 }
 
-double NodeMover::badnessOfFace(const FaceState& s, bool internal) const {
-  const double angle = internal ? limits_.maxAngleInternal : limits_.maxAngleBoundary;
+double NodeMover::badnessOfShape(const FaceMeasures& shape, bool internal) const {
   const double eta = internal ? limits_.minEtaInternal : limits_.minEtaBoundary;
+  return std::max((1 - shape.cosWarpage) / (1 - cosWarpage_), (1 - shape.eta) / (1 - eta));
+}
+
+double NodeMover::badnessOfAngle(const FaceState& s, bool internal) const {
+  const double cosine = internal ? cosInternal_ : cosBoundary_;
   const double skew = internal ? limits_.maxSkewInternal : limits_.maxSkewBoundary;
-  return std::max({std::acos(std::clamp(s.cosAngle, -1.0, 1.0)) / (angle * kDegree),
-                   s.shape.warpage / limits_.maxWarpage, s.skew / skew, (1 - s.shape.eta) / (1 - eta)});
+  return std::max((1 - s.cosAngle) / (1 - cosine), s.skew / skew);
 }
 
 // Volume and tetrahedra against the limits; below 1 when better.
@@ -171,7 +207,7 @@ double NodeMover::badness(Id p) const {
   double worst = 0;
   for (Id c : pointCells_[p]) {
     worst = std::max(worst, badnessOfCell(cells_[c]));
-    for (Id f : cellFaces_[c]) worst = std::max(worst, badnessOfFace(faces_[f], f < mesh_.internalFaces()));
+    for (Id f : cellFaces_[c]) worst = std::max(worst, badnessOfFace(faces_[f], isInternal(f)));
   }
   return worst;
 }
@@ -212,26 +248,29 @@ bool NodeMover::isBetter(const Touched& t) const {
   return after < before || (after == before && excessAfter < excessBefore);
 }
 
-// Cheapest checks first; each notes what it changes.
-bool NodeMover::tryShapes(Touched& t) {
+// Cheapest checks first; each notes what it changes, and ends the attempt at the first measure that is out of
+// its limit or worse than `worst`.
+bool NodeMover::tryShapes(Touched& t, double worst) {
   for (Id f : t.shapes) {
     t.oldShapes.push_back(faces_[f].shape);
     faces_[f].shape = measureFace(mesh_.points, mesh_.faces[f]);
     if (!faceShapeHolds(f, t.oldShapes.back())) return false;
+    if (worst < kAny && badnessOfShape(faces_[f].shape, isInternal(f)) > worst) return false;
   }
   return true;
 }
 
-bool NodeMover::tryCells(Touched& t) {
+bool NodeMover::tryCells(Touched& t, double worst) {
   for (Id c : t.cells) {
     t.oldCells.push_back(cells_[c]);
     cells_[c] = cellNow(c);
     if (!cellHolds(cells_[c], t.oldCells.back())) return false;
+    if (worst < kAny && badnessOfCell(cells_[c]) > worst) return false;
   }
   return true;
 }
 
-bool NodeMover::tryAngles(Touched& t) {
+bool NodeMover::tryAngles(Touched& t, double worst) {
   for (Id c : t.cells)
     for (Id f : cellFaces_[c]) t.faces.push_back(f);
   sortUnique(t.faces);
@@ -239,6 +278,7 @@ bool NodeMover::tryAngles(Touched& t) {
     t.oldFaces.push_back(faces_[f]);
     relate(f);
     if (!faceAngleHolds(f, t.oldFaces.back())) return false;
+    if (worst < kAny && badnessOfAngle(faces_[f], isInternal(f)) > worst) return false;
   }
   return true;
 }
@@ -250,8 +290,9 @@ void NodeMover::undo(const Id* points, const Touched& t) {
   for (std::size_t i = 0; i < t.oldCells.size(); ++i) cells_[t.cells[i]] = t.oldCells[i];
 }
 
-bool NodeMover::attempt(const Id* points, const Vec3* targets, std::size_t count, bool mustImprove,
+bool NodeMover::attempt(const Id* points, const Vec3* targets, std::size_t count, double worst,
                         const std::function<bool()>& accept) {
+  const bool mustImprove = worst < kAny;
   thread_local Touched t;
   t.oldPoints.clear();
   bool moves = false;
@@ -265,7 +306,7 @@ bool NodeMover::attempt(const Id* points, const Vec3* targets, std::size_t count
   if (!moves) return !mustImprove && (!accept || accept());
   gather(points, count, t);
   forEachFree([&](double& x, double to) { x = to; });
-  if (!tryShapes(t) || (accept && !accept()) || !tryCells(t) || !tryAngles(t) ||
+  if (!tryShapes(t, worst) || (accept && !accept()) || !tryCells(t, worst) || !tryAngles(t, worst) ||
       (mustImprove && !isBetter(t))) {
     undo(points, t);
     return false;
@@ -285,6 +326,12 @@ Id NodeMover::lastChange(Id p) const {
   look(p);
   if (mesh_.base[p] != kNone) look(mesh_.base[p]);
   return last;
+}
+
+bool NodeMover::improveTogether(const std::vector<Id>& points, const std::vector<Vec3>& targets) {
+  double worst = 0;
+  for (Id p : points) worst = std::max(worst, badness(p));
+  return attempt(points.data(), targets.data(), points.size(), worst);
 }
 
 double NodeMover::drift(Id p, const Vec3& target, int halvings) {

@@ -13,6 +13,7 @@
 
 #include <atomic>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "MeshQuality.h"
@@ -26,30 +27,30 @@ class NodeMover {
   NodeMover(PolyMesh& mesh, const QualityLimits& limits, const Monitor* monitor = nullptr);
 
   /// Moves p to target (its fixed coordinates stay); true when kept.
-  bool move(Id p, const Vec3& target) { return attempt(&p, &target, 1, false); }
+  bool move(Id p, const Vec3& target) { return attempt(&p, &target, 1, kAny); }
   /// As move, but kept only if accept() agrees. It is asked while the point is there and the shapes of its
   /// faces are current, before the costly checks.
   template <class Accept>
   bool moveIf(Id p, const Vec3& target, const Accept& accept) {
-    return attempt(&p, &target, 1, false, std::cref(accept));
+    return attempt(&p, &target, 1, kAny, std::cref(accept));
   }
   /// As move, but a refused target is pulled back half way, up to `halvings` times. Returns the kept fraction
   /// of the way, 0 when the point stayed.
   double drift(Id p, const Vec3& target, int halvings = 3);
   /// Kept only if valid and the worst local measure, relative to its limit, gets better (4.5, second
   /// strategy).
-  bool improve(Id p, const Vec3& target) { return attempt(&p, &target, 1, true); }
+  bool improve(Id p, const Vec3& target) { return improve(p, target, badness(p)); }
+  /// The same where badness(p) is known, as when several places are tried.
+  bool improve(Id p, const Vec3& target, double badness) { return attempt(&p, &target, 1, badness); }
   /// Moves several points at once, all or none.
   bool moveTogether(const std::vector<Id>& points, const std::vector<Vec3>& targets) {
-    return attempt(points.data(), targets.data(), points.size(), false);
+    return attempt(points.data(), targets.data(), points.size(), kAny);
   }
   template <std::size_t N>
   bool moveTogether(const Id (&points)[N], const Vec3 (&targets)[N]) {
-    return attempt(points, targets, N, false);
+    return attempt(points, targets, N, kAny);
   }
-  bool improveTogether(const std::vector<Id>& points, const std::vector<Vec3>& targets) {
-    return attempt(points.data(), targets.data(), points.size(), true);
-  }
+  bool improveTogether(const std::vector<Id>& points, const std::vector<Vec3>& targets);
   /// Worst measure around a point relative to its limit: below 1 is valid, above 1 is not.
   double badness(Id p) const;
 
@@ -94,32 +95,46 @@ class NodeMover {
  private:
   struct FaceState {
     FaceMeasures shape;
-    double cosAngle = 1, skew = 0;
+    double cosAngle = 1;  ///< the worse of the thesis' and of OpenFOAM's cell centres
+    double skew = 0;
+    float weight = 0.5, volumeRatio = 1, tet = 0;  ///< tet: smallest of OpenFOAM's decomposition
+  };
+  struct CellState : CellMeasures {
+    double determinant = 1;
   };
   struct Touched;  // scratch of one attempt
+  static constexpr double kAny = std::numeric_limits<double>::infinity();
 
-  bool attempt(const Id* points, const Vec3* targets, std::size_t count, bool mustImprove,
+  /// worst: kept only if better, from this badness on; kAny: if valid.
+  bool attempt(const Id* points, const Vec3* targets, std::size_t count, double worst,
                const std::function<bool()>& accept = {});
   void gather(const Id* points, std::size_t count, Touched& t) const;
-  bool tryShapes(Touched& t);
-  bool tryCells(Touched& t);
-  bool tryAngles(Touched& t);
+  bool tryShapes(Touched& t, double worst);
+  bool tryCells(Touched& t, double worst);
+  bool tryAngles(Touched& t, double worst);
   void undo(const Id* points, const Touched& t);
   void relate(Id f);
   bool isBetter(const Touched& t) const;
   bool faceShapeHolds(Id f, const FaceMeasures& old) const;
   bool faceAngleHolds(Id f, const FaceState& old) const;
-  bool cellHolds(const CellMeasures& now, const CellMeasures& old) const;
-  double badnessOfFace(const FaceState& s, bool internal) const;
+  bool cellHolds(const CellState& now, const CellState& old) const;
+  bool isInternal(Id f) const { return f < mesh_.internalFaces(); }
+  double badnessOfShape(const FaceMeasures& shape, bool internal) const;
+  double badnessOfAngle(const FaceState& s, bool internal) const;
+  double badnessOfFace(const FaceState& s, bool internal) const {
+    return std::max(badnessOfShape(s.shape, internal), badnessOfAngle(s, internal));
+  }
   double badnessOfCell(const CellMeasures& c) const;
-  CellMeasures cellNow(Id c) const;
+  CellState cellNow(Id c) const;
+  void measureShape(Id c, CellState& cell) const;
+  double determinant(Id c) const;
 
   PolyMesh& mesh_;
   const Monitor* monitor_;
   QualityLimits limits_;
-  double cosInternal_, cosBoundary_, minVolume_, minTet_;
+  double cosInternal_, cosBoundary_, cosWarpage_, minVolume_, minTet_, minWeight_, minRatio_;
   std::vector<FaceState> faces_;
-  std::vector<CellMeasures> cells_;
+  std::vector<CellState> cells_;
   Csr<Id> pointCells_, pointFaces_, cellFaces_, cellPoints_;
   Id tick_ = 1;
   std::vector<std::atomic<Id>> changed_;  // #C tick of the last kept move in the cell or across a face of it

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "Clearance.h"
 #include "FrontMesh.h"
 #include "FrontRepair.h"
 #include "LeakPaths.h"
@@ -25,24 +26,54 @@ struct Leaking : RegionError {
   std::vector<Vec3> inside, outside;  ///< points on either side of the leak, where known
 };
 
-[[noreturn]] void refuseOpen(const Octree& tree) {
+/// How many edges lie on one triangle only, and whether every edge lies on an even number of them: then no
+/// way leads from one side of the surface to the other.
+struct EdgeCount {
+  std::size_t single = 0;
+  bool closed = true;
+};
+
+EdgeCount countEdges(const SurfaceModel& model) {
+  std::vector<std::pair<Id, Id>> edges;
+  edges.reserve(3 * model.triangles().size());
+  for (const SurfaceModel::Triangle& t : model.triangles())
+    for (int k = 0; k < 3; ++k)
+      if (t[k] != t[(k + 1) % 3]) edges.push_back(std::minmax({t[k], t[(k + 1) % 3]}));
+  std::sort(edges.begin(), edges.end());
+  EdgeCount count;
+  for (std::size_t i = 0, next = 0; i < edges.size(); i = next) {
+    while (next < edges.size() && edges[next] == edges[i]) ++next;
+    count.single += next - i == 1;
+    count.closed = count.closed && (next - i) % 2 == 0;
+  }
+  return count;
+}
+
+[[noreturn]] void refuseOpen(const Octree& tree, const SurfaceModel& model) {
+  const EdgeCount edges = countEdges(model);
+  if (edges.closed)
+    throw RegionError(
+        fmt::format("The geometry encloses nothing with {}: it is closed, but too thin everywhere for a cell "
+                    "to fit inside. Use a smaller feature size, or mesh the outside.",
+                    sizeHint(tree)));
   throw Leaking(
       fmt::format("The geometry encloses nothing with {}: it leaks through a hole larger than a cell, or "
-                  "is too thin for a cell to fit inside. Use a larger or a smaller feature size, close "
-                  "the hole, or mesh the outside.",
-                  sizeHint(tree)),
+                  "is too thin for a cell to fit inside; {} of its edges lie on one triangle only. Use a "
+                  "larger or a smaller feature size, close the hole, or mesh the outside.",
+                  sizeHint(tree), edges.single),
       {});
 }
 
 // Regions come largest first.
-std::vector<std::uint8_t> chooseEnclosed(const Octree& tree, const Regions& regions, bool all) {
+std::vector<std::uint8_t> chooseEnclosed(const Octree& tree, const SurfaceModel& model,
+                                         const Regions& regions, bool all) {
   std::vector<std::uint8_t> chosen(regions.list.size(), 0);
   bool any = false;
   for (std::size_t r = 0; r < chosen.size() && (all || !any); ++r) {
     chosen[r] = !regions.list[r].open;
     any = any || chosen[r] != 0;
   }
-  if (!any) refuseOpen(tree);
+  if (!any) refuseOpen(tree, model);
   return chosen;
 }
 
@@ -147,9 +178,9 @@ std::vector<std::uint8_t> choose(const Octree& tree, const SurfaceModel& model, 
                                  const PaintFrontOptions& options) {
   switch (options.region) {
     case Region::Inside:
-      return chooseEnclosed(tree, regions, false);
+      return chooseEnclosed(tree, model, regions, false);
     case Region::Enclosed:
-      return chooseEnclosed(tree, regions, true);
+      return chooseEnclosed(tree, model, regions, true);
     case Region::Outside:
       return chooseOutside(tree, regions);
     case Region::Points:
@@ -200,6 +231,12 @@ std::vector<std::uint8_t> chooseOrExplain(const Octree& tree, const SurfaceModel
     for (std::size_t r = 0; r < chosen.size(); ++r)
       if (chosen[r]) warnOfLargerRoom(regions.list[r].volume, tree, model, monitor);
   return chosen;
+}
+
+// Where the domain surely is: at the given points, or at the corners of the outside.
+std::vector<Id> homeLeaves(const Octree& tree, const PaintFrontOptions& options) {
+  if (options.region == Region::Outside) return outsideLeaves(tree, {});
+  return options.region == Region::Points ? outsideLeaves(tree, options.points) : std::vector<Id>{};
 }
 
 // Repair can cut a thin neck; what hangs on it alone would be a mesh of its own, so each region keeps its
@@ -266,6 +303,27 @@ void noteInvisible(const NarrowPassages& invisible, const Octree& tree, std::vec
       largest.median, largest.featureSize));
 }
 
+// Inside takes the largest enclosed region alone: of several bodies, or of one that thin places cut in two,
+// the others are missed without a word.
+void noteOthers(const std::vector<PaintedRegion>& regions, const Octree& tree,
+                std::vector<std::string>& notes) {
+  constexpr double little = 0.1;
+  double meshed = 0, others = 0;
+  Id count = 0;
+  for (const PaintedRegion& region : regions) {
+    if (region.open) continue;
+    (region.chosen ? meshed : others) += region.volume;
+    count += region.chosen ? 0 : 1;
+  }
+  if (others <= little * meshed) return;
+  notes.push_back(
+      fmt::format("Of the volume that the geometry encloses with {}, {:.0f}% is in the mesh; {} not. Region "
+                  "Enclosed meshes "
+                  "all, and a smaller feature size joins what only thin places part.",
+                  sizeHint(tree), 100 * meshed / (meshed + others),
+                  count == 1 ? "another region is" : fmt::format("{} other regions are", count)));
+}
+
 // Filling, then the repair of what is no permitted pattern, then whole regions only.
 void repairFront(const Octree& tree, const SurfaceModel& model, const PaintFrontOptions& options,
                  Regions& regions, std::vector<std::uint8_t>& painted, Monitor& monitor,
@@ -294,6 +352,10 @@ PolyMesh paintFront(const Octree& tree, const SurfaceModel& model, const PaintFr
   monitor.check(0, "painting");
   Regions regions = findRegions(tree, model);
   const std::vector<std::uint8_t> chosen = chooseOrExplain(tree, model, regions, options, monitor);
+  if (options.reportLeaks) {
+    r.leaked = findRoomLeaks(tree, model, regions, chosen, homeLeaves(tree, options), monitor);
+    if (!r.leaked.rooms.empty()) monitor.warning(describe(r.leaked));
+  }
   std::vector<std::uint8_t> painted(tree.size(), 0);
   for (Id leaf = 0; leaf < tree.size(); ++leaf) {
     const Id id = regions.ofLeaf[leaf];
@@ -319,6 +381,7 @@ PolyMesh paintFront(const Octree& tree, const SurfaceModel& model, const PaintFr
   }
   r.regions = std::move(regions.list);
   warnOfLost(r.regions, chosen, options, monitor);
+  if (options.region == Region::Inside) noteOthers(r.regions, tree, r.notes);
   monitor.check(0.85, "front mesh");
   PolyMesh mesh = frontMesh(tree, painted, model);
   nameZones(r.regions, r.regionOfCell, mesh);

@@ -2,6 +2,7 @@
 // Stage 2: which leaves are the domain, and a front that a prism layer can grow on (thesis 3.4.2, 3.5).
 #pragma once
 
+#include "LeakedRooms.h"
 #include "Monitor.h"
 #include "NarrowPassages.h"
 #include "Octree.h"
@@ -30,6 +31,7 @@ struct PaintFrontOptions {
   bool allowOpen = false;            ///< accept a named region that reaches the sides of an undeclared domain
   bool fill = true;                  ///< front filling (Fig. 3-33)
   bool reportInvisible = true;       ///< look for free space that is too narrow for the leaves
+  bool reportLeaks = true;           ///< look for rooms behind openings a few cells wide, and warn of them
 };
 
 struct PaintFrontReport {
@@ -37,7 +39,8 @@ struct PaintFrontReport {
   std::vector<Id> regionOfCell;        ///< #C
   std::vector<std::uint8_t> painted;   ///< #L 1 = the leaf is a cell of the mesh
   NarrowPassages invisible;            ///< free space that is too narrow for the leaves
-  std::vector<std::string> notes;      ///< sentences for the user: what became invisible
+  RoomLeaks leaked;                    ///< rooms of the mesh behind openings a few cells wide
+  std::vector<std::string> notes;      ///< sentences for the user: what became invisible or is not meshed
   Id chosenCells = 0, grown = 0, removed = 0, filled = 0;
 };
 

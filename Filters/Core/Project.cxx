@@ -34,19 +34,13 @@ class Projector {
         options_(options),
         mover_(mesh, options.limits, &monitor),
         wall_(wallSurface(mesh)) {
-    std::vector<Id> bases;
-    for (Id p : wall_.nodes) bases.push_back(mesh.base[p]);
     wallGroups_ = mover_.colour(wall_.nodes);
-    baseGroups_ = mover_.colour(bases);
-    rowOfBase_.assign(mesh.points.size(), kNone);
-    for (Id row = 0; row < wall_.size(); ++row) rowOfBase_[bases[row]] = row;
     distance_.assign(wall_.size(), 0.0);
-    driftTried_.assign(wall_.size(), 0);
-    smoothTried_ = leadTried_ = driftTried_;
-    led_.assign(wall_.size(), Vec3::Zero());
+    tried_.assign(wall_.size(), 0);
+    baseOffset_.assign(wall_.size(), Vec3::Zero());
     innerTried_.assign(mesh.points.size(), 0);
     freeTried_ = innerTried_;
-    collectInner(bases);
+    collectInner();
   }
 
   void run(Monitor& monitor) {
@@ -54,23 +48,18 @@ class Projector {
     for (int sweep = 0; sweep < kFlatteningSweeps; ++sweep) {
       monitor.check(0, "front flattening");
       flattenFront();
-      leadBases();
     }
     for (int round = 0; round < rounds; ++round) {
       monitor.check(0.9 * round / rounds, "projection");
       // The way is spread over the first half of the rounds, so that all parts of the front arrive together.
-      const double part = 1.0 / std::max(1, rounds / 2 - round);
-      drift(part);
-      for (int sweep = 0; sweep < options_.smoothingSweeps; ++sweep) smoothFront(part);
-      leadBases();
+      approach(1.0 / std::max(1, rounds / 2 - round));
       if (round % 3 == 2) smoothInner();
     }
     for (int round = 0; round < kFreeingRounds && freeStuck(); ++round) {
       monitor.check(0.9 + 0.1 * round / kFreeingRounds, "freeing stuck nodes");
-      drift(1);
-      leadBases();
+      approach(1);
     }
-    drift(1);
+    approach(1);
   }
 
  private:
@@ -81,8 +70,6 @@ class Projector {
     tried = mover_.tick();
     return true;
   }
-
-  double scale(Id p) const { return wall_.scale[wall_.rowOf[p]]; }
 
   /// Outward unit normal of the wall at a node, from the faces around it.
   Vec3 normalAt(Id p) const {
@@ -113,90 +100,82 @@ class Projector {
   // 4.5.1: smoothing flattens the front's stairs before it moves; a stair's riser has to lie down in the
   // surface, and folds if it is still upright when it gets there.
   void flattenFront() {
-    mover_.forEach(wallGroups_, [&](Id p) {
-      Vec3 mean, normal;
-      if (meanAround(wall_.rowOf[p], mean, normal)) mover_.drift(p, mesh_.points[p] + 0.5 * mean, 1);
-    });
-  }
-
-  // 4.6.2, front drifting: towards the closest point, part of the way.
-  void drift(double part) {
-    if (part != lastPart_) std::fill(driftTried_.begin(), driftTried_.end(), 0);
-    lastPart_ = part;
+    placeBases();
     mover_.forEach(wallGroups_, [&](Id p) {
       const Id row = wall_.rowOf[p];
-      if (!worthTrying(p, driftTried_[row])) return;
-      const double before = distance_[row];
-      driftNode(p, part, distance_[row]);
-      if (distance_[row] != before) smoothTried_[row] = 0;
-    });
-  }
-
-  void driftNode(Id p, double part, double& left) {
-    const Vec3 x = mesh_.points[p];
-    const Vec3 way = field_.closest(x).point - x;
-    const double distance = way.norm();
-    left = distance;
-    if (distance < 1e-12 * scale(p)) return;
-    const double wanted = distance < kArrived * scale(p) ? 1 : part;
-    if (mover_.move(p, x + wanted * way)) {
-      left = (1 - wanted) * distance;
-      return;
-    }
-    // The prism is in the way: take its foot along.
-    const Id b = mesh_.base[p];
-    if (mover_.moveTogether({p, b}, {x + wanted * way, mesh_.points[b] + 0.5 * wanted * way}))
-      left = (1 - wanted) * distance;
-    else
-      left = (1 - 0.5 * wanted * mover_.drift(p, x + 0.5 * wanted * way, 2)) * distance;
-  }
-
-  // 4.5.2: smooth in the tangent plane estimated from the mesh, then back towards the geometry. A node keeps
-  // the height above the geometry it had got to; only the drift brings it nearer.
-  void smoothFront(double part) {
-    if (part != 1) std::fill(smoothTried_.begin(), smoothTried_.end(), 0);
-    mover_.forEach(wallGroups_, [&](Id p) {
-      const Id row = wall_.rowOf[p];
-      if (!worthTrying(p, smoothTried_[row])) return;
       const Vec3 x = mesh_.points[p];
-      Vec3 mean, n;
-      if (!meanAround(row, mean, n)) return;
-      const Vec3 step = 0.5 * (mean - mean.dot(n) * n);
-      if (step.norm() < kSmallStep * wall_.scale[row]) return;
-      Vec3 target = x + step;
-      if (part == 1) {
-        const Vec3 back = field_.closest(target).point - target;
-        const double height = back.norm();
-        if (height > distance_[row]) target += back * (1 - distance_[row] / height);
-      }
-      mover_.drift(p, target, 1);
+      Vec3 mean, normal;
+      if (meanAround(row, mean, normal) && !moveWithBase(p, row, x + 0.5 * mean))
+        mover_.move(p, x + 0.25 * mean);
     });
   }
 
-  // 4.5.3: bases below their wall nodes, at one smooth height; ideal places are averaged with the
-  // neighbours'.
-  void leadBases() {
-    std::vector<Vec3> ideal(wall_.size()), smooth(wall_.size());
+  // 4.5.3: where the bases ought to be, below their wall nodes at one smooth height; ideal places are
+  // averaged with the neighbours'.
+  void placeBases() {
+    std::vector<Vec3> smooth(wall_.size());
     tbb::parallel_for(Id(0), wall_.size(), [&](Id row) {
-      ideal[row] = -kPrismHeight * wall_.scale[row] * normalAt(wall_.nodes[row]);
+      baseOffset_[row] = -kPrismHeight * wall_.scale[row] * normalAt(wall_.nodes[row]);
     });
     for (int sweep = 0; sweep < 2; ++sweep) {
       tbb::parallel_for(Id(0), wall_.size(), [&](Id row) {
         Vec3 sum = Vec3::Zero();
-        for (Id other : wall_.neighbours[row]) sum += ideal[other];
-        smooth[row] = 0.5 * ideal[row] + 0.5 * sum / std::max<double>(1, wall_.neighbours[row].size());
+        for (Id other : wall_.neighbours[row]) sum += baseOffset_[other];
+        smooth[row] = 0.5 * baseOffset_[row] + 0.5 * sum / std::max<double>(1, wall_.neighbours[row].size());
       });
-      ideal.swap(smooth);
+      baseOffset_.swap(smooth);
     }
-    mover_.forEach(baseGroups_, [&](Id b) {
-      const Id row = rowOfBase_[b];
-      const Vec3 step = 0.5 * (mesh_.points[wall_.nodes[row]] + ideal[row] - mesh_.points[b]);
-      if (step.norm() <= kSmallStep * wall_.scale[row]) return;
-      const Vec3 target = mesh_.points[b] + step;
-      if (target != led_[row]) leadTried_[row] = 0;
-      led_[row] = target;
-      if (worthTrying(b, leadTried_[row])) mover_.drift(b, target, 1);
+  }
+
+  /// Moves a wall node and, half the way to its place, its base; the node alone where that is refused. Both
+  /// at once cost no more than the base, as the node's cells are the base's too.
+  bool moveWithBase(Id p, Id row, const Vec3& target) {
+    const Id b = mesh_.base[p];
+    const Vec3 step = 0.5 * (target + baseOffset_[row] - mesh_.points[b]);
+    if (step.norm() > kSmallStep * wall_.scale[row] &&
+        mover_.moveTogether({p, b}, {target, mesh_.points[b] + step}))
+      return true;
+    return mover_.move(p, target);
+  }
+
+  // 4.6.2, front drifting, and 4.5.2, front smoothing, in one: a step in the tangent plane of the mesh
+  // towards the middle of the faces around, and from there part of the way to the closest point.
+  void approach(double part) {
+    if (part != lastPart_) std::fill(tried_.begin(), tried_.end(), 0);
+    lastPart_ = part;
+    placeBases();
+    mover_.forEach(wallGroups_, [&](Id p) {
+      const Id row = wall_.rowOf[p];
+      if (worthTrying(p, tried_[row])) approachNode(p, row, part);
     });
+  }
+
+  void approachNode(Id p, Id row, double part) {
+    const Vec3 x = mesh_.points[p];
+    Vec3 mean, n;
+    if (meanAround(row, mean, n)) {
+      const Vec3 step = 0.5 * (mean - mean.dot(n) * n);
+      if (step.norm() > kSmallStep * wall_.scale[row] && driftPart(p, row, x + step, part)) return;
+    }
+    if (driftPart(p, row, x, part)) return;
+    // The prism is in the way: take its foot along.
+    const Vec3 way = field_.closest(x).point - x;
+    const double distance = way.norm(), wanted = distance < kArrived * wall_.scale[row] ? 1 : part;
+    const Id b = mesh_.base[p];
+    if (mover_.moveTogether({p, b}, {x + wanted * way, mesh_.points[b] + 0.5 * wanted * way}))
+      distance_[row] = (1 - wanted) * distance;
+    else
+      distance_[row] = (1 - 0.5 * wanted * mover_.drift(p, x + 0.5 * wanted * way, 2)) * distance;
+  }
+
+  /// Moves p to where part of the way from `from` to the geometry leads; false when it may not.
+  bool driftPart(Id p, Id row, const Vec3& from, double part) {
+    const Vec3 way = field_.closest(from).point - from;
+    const double distance = way.norm();
+    const double wanted = distance < kArrived * wall_.scale[row] ? 1 : part;
+    if (!moveWithBase(p, row, from + wanted * way)) return false;
+    distance_[row] = (1 - wanted) * distance;
+    return true;
   }
 
   // 4.5.1: Laplacian, kept only where the worst local measure gets better.
@@ -224,11 +203,12 @@ class Projector {
     around.erase(std::unique(around.begin(), around.end()), around.end());
     mover_.forEach(mover_.colour(around), [&](Id p) {
       if (!worthTrying(p, freeTried_[p])) return;
+      double worst = mover_.badness(p);
       for (double step : {0.2, 0.07}) {
         for (int k = 0; k < 6; ++k) {
           Vec3 d = Vec3::Zero();
           d[k / 2] = k % 2 ? step : -step;
-          mover_.improve(p, mesh_.points[p] + mesh_.finestSize * d);
+          if (mover_.improve(p, mesh_.points[p] + mesh_.finestSize * d, worst)) worst = mover_.badness(p);
         }
       }
     });
@@ -236,11 +216,14 @@ class Projector {
   }
 
   // Rings of nodes below the bases, by cells.
-  void collectInner(const std::vector<Id>& bases) {
+  void collectInner() {
     std::vector<std::uint8_t> seen(mesh_.points.size(), 0);
     for (Id p : wall_.nodes) seen[p] = 1;
-    std::vector<Id> ring = bases, inner;
-    for (Id b : bases) seen[b] = 1;
+    std::vector<Id> ring, inner;
+    for (Id p : wall_.nodes) {
+      ring.push_back(mesh_.base[p]);
+      seen[mesh_.base[p]] = 1;
+    }
     for (int k = 0; k < kInnerRings; ++k) {
       std::vector<Id> next;
       for (Id p : ring)
@@ -262,13 +245,12 @@ class Projector {
   const ProjectOptions& options_;
   NodeMover mover_;
   WallSurface wall_;
-  std::vector<std::vector<Id>> wallGroups_, baseGroups_, innerGroups_;
-  std::vector<Id> rowOfBase_;
-  std::vector<double> distance_;  // of each wall node to the geometry, as its last drift left it
-  double lastPart_ = 0;           // of the way, in the last drift
-  std::vector<Id> driftTried_, smoothTried_, leadTried_;  // #W tick of the last attempt
-  std::vector<Id> innerTried_, freeTried_;                // #P
-  std::vector<Vec3> led_;                                 // #W where each base was last led to
+  std::vector<std::vector<Id>> wallGroups_, innerGroups_;
+  std::vector<double> distance_;            // of each wall node to the geometry, as its last drift left it
+  double lastPart_ = 0;                     // of the way, in the last drift
+  std::vector<Vec3> baseOffset_;            // #W ideal place of each base from its wall node
+  std::vector<Id> tried_;                   // #W tick of the last attempt
+  std::vector<Id> innerTried_, freeTried_;  // #P
 };
 
 }  // namespace

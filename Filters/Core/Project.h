@@ -8,8 +8,7 @@
 namespace pm {
 
 struct ProjectOptions {
-  int rounds = 12;          ///< drifting rounds; each moves a node a growing part of its way
-  int smoothingSweeps = 2;  ///< front smoothing sweeps a round
+  int rounds = 8;  ///< drifting rounds; each moves a node a growing part of its way
   QualityLimits limits;
 };
 

@@ -96,7 +96,7 @@ Scan scanAll(const PolyMesh& mesh, const MeshMeasures& m, const QualityLimits& l
   scan(s.criteria[kOpen], badCell, [&](Id c) { return m.openness[c]; });
   for (int i : {kEtaIn, kEtaOut}) scan(s.criteria[i], badFace, [&](Id f) { return m.faces[f].eta; });
   for (int i : {kAngleIn, kAngleOut}) scan(s.criteria[i], badFace, [&](Id f) { return m.faceAngle[f]; });
-  scan(s.criteria[kWarp], badFace, [&](Id f) { return m.faces[f].warpage; });
+  scan(s.criteria[kWarp], badFace, [&](Id f) { return m.faces[f].warpage(); });
   for (int i : {kSkewIn, kSkewOut}) scan(s.criteria[i], badFace, [&](Id f) { return m.faceSkew[f]; });
   for (std::uint8_t bad : badCell) s.violations += bad;
   for (std::uint8_t bad : badFace) s.violations += bad;

@@ -57,7 +57,7 @@ TEST(MeshQuality, UnitCube) {
     EXPECT_NEAR(m.faces[f].normal.norm(), 1, 1e-14);
     EXPECT_NEAR(m.faces[f].normal.dot(m.faces[f].centre - m.cells[0].centre), 0.5, 1e-14);  // leaves the cell
     EXPECT_NEAR(m.faces[f].eta, eta, 1e-14);
-    EXPECT_NEAR(m.faces[f].warpage, 0, 1e-6);
+    EXPECT_NEAR(m.faces[f].warpage(), 0, 1e-6);
     EXPECT_NEAR(m.faceAngle[f], 0, 1e-5);
     EXPECT_NEAR(m.faceSkew[f], 0, 1e-6);
   }
@@ -77,7 +77,7 @@ TEST(MeshQuality, EquilateralTriangleIsNotDegraded) {
   EXPECT_NEAR(m.normal.z(), std::sqrt(3.0) / 4, 1e-15);
   // Central triangles have sides 1, 1/sqrt(3), 1/sqrt(3).
   EXPECT_NEAR(m.eta, 2 * std::sqrt(3.0) * (std::sqrt(3.0) / 12) / (0.5 + 1 / std::sqrt(3.0)), 1e-14);
-  EXPECT_EQ(m.warpage, 0);
+  EXPECT_EQ(m.warpage(), 0);
 }
 
 TEST(MeshQuality, FaceCentreIsWeightedByArea) {
@@ -100,7 +100,7 @@ TEST(MeshQuality, WarpageOfASaddle) {
   const FaceMeasures m = measureFace(points, {row.data(), row.data() + 4});
   // The central triangles' normals are (+-2h, 0, 1/2) and (0, +-2h, 1/2) up to a factor: opposite ones differ
   // most.
-  EXPECT_NEAR(m.warpage, 2 * std::atan(2 * h) * 180 / kPi, 1e-9);
+  EXPECT_NEAR(m.warpage(), 2 * std::atan(2 * h) * 180 / kPi, 1e-9);
   EXPECT_NEAR((m.normal - Vec3(0, 0, 1)).norm(), 0, 1e-14);
 }
 
@@ -115,7 +115,7 @@ TEST(MeshQuality, ManyPointsOnAFace) {
   const FaceMeasures m = measureFace(points, {row.data(), row.data() + n});
   EXPECT_NEAR(m.normal.z(), 0.5 * n * std::sin(2 * kPi / n), 1e-12);
   EXPECT_NEAR(m.centre.norm(), 0, 1e-14);
-  EXPECT_NEAR(m.warpage, 0, 1e-5);
+  EXPECT_NEAR(m.warpage(), 0, 1e-5);
 }
 
 TEST(MeshQuality, ShearedHexTurnsTheAngles) {
@@ -189,7 +189,7 @@ void expectSame(const PolyMesh& mesh, const PolyMesh& moved, double scale, doubl
   }
   for (Id f = 0; f < mesh.faceCount(); ++f) {
     ASSERT_NEAR(b.faces[f].eta, a.faces[f].eta, tolerance);
-    ASSERT_NEAR(b.faces[f].warpage, a.faces[f].warpage, 1e-5 + 100 * tolerance);
+    ASSERT_NEAR(b.faces[f].warpage(), a.faces[f].warpage(), 1e-5 + 100 * tolerance);
     ASSERT_NEAR(b.faceAngle[f], a.faceAngle[f], 1e-4 + 100 * tolerance);
     ASSERT_NEAR(b.faceSkew[f], a.faceSkew[f], 1e-6 + 10 * tolerance);
   }

@@ -159,6 +159,68 @@ TEST(PaintFront, LeaksAndBadPointsAreNamed) {
   EXPECT_THROW(paint(*model, 0.05, front), InputError);
 }
 
+// A box without its top, too wide open to be called a room that leaks, and a small closed box beside its
+// wall.
+TEST(PaintFront, TinyRegionIsNotTakenWithoutAWord) {
+  struct Listener : Monitor {
+    void warning(const std::string& sentence) override { heard += sentence; }
+    std::string heard;
+  };
+  const auto warnings = [](const Soup& soup) {
+    const auto model = soup.model();
+    OctreeDecomposeOptions octree;
+    octree.featureSize = 0.02;
+    Listener listener;
+    paintFront(decompose(*model, octree, listener), *model, {}, listener);
+    return listener.heard;
+  };
+  Soup box = cube();
+  EXPECT_EQ(warnings(box), "");
+  box.triangles.resize(box.triangles.size() - 2);
+  box.patches.resize(box.triangles.size());
+  box.append(cube().mapped(
+      [](const Vec3& p) { return Vec3(0.1 + 0.1 * p[0], 0.1 + 0.1 * p[1], 0.1 + 0.1 * p[2]); }));
+  EXPECT_NE(warnings(box).find("% of the box around the geometry"), std::string::npos) << warnings(box);
+}
+
+TEST(PaintFront, OtherEnclosedRegionsAreNoted) {
+  const auto notes = [](const Soup& soup, Region region) {
+    PaintFrontOptions front;
+    front.region = region;
+    PaintFrontReport report;
+    paint(*soup.model(), 0.05, front, {}, &report);
+    return report.notes;
+  };
+  Soup two = cube(3);
+  EXPECT_TRUE(notes(two, Region::Inside).empty());
+  two.append(cube(3).mapped([](const Vec3& p) { return Vec3(p[0] + 1.5, p[1], p[2]); }));
+  ASSERT_EQ(notes(two, Region::Inside).size(), 1u);
+  EXPECT_NE(notes(two, Region::Inside)[0].find("% is in the mesh; another region is not"), std::string::npos)
+      << notes(two, Region::Inside)[0];
+  EXPECT_TRUE(notes(two, Region::Enclosed).empty());
+}
+
+// A wall of 1 by 1 by 0.02 holds no cell of 0.05; it is the user's to know that no hole is to be looked for.
+TEST(PaintFront, NothingEnclosedSaysWhetherTheGeometryIsClosed) {
+  const auto sentence = [](const Soup& soup) -> std::string {
+    try {
+      paint(*soup.model(), 0.05);
+    } catch (const RegionError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  Soup plate = cube(3).mapped([](const Vec3& p) { return Vec3(p[0], p[1], 0.02 * p[2]); });
+  EXPECT_NE(sentence(plate).find("it is closed, but too thin"), std::string::npos) << sentence(plate);
+  plate.triangles.pop_back();
+  plate.patches.pop_back();
+  EXPECT_NE(sentence(plate).find("3 of its edges lie on one"), std::string::npos) << sentence(plate);
+  Soup box = cube();
+  box.triangles.resize(box.triangles.size() - 2);
+  box.patches.resize(box.triangles.size());
+  EXPECT_NE(sentence(box).find("4 of its edges lie on one"), std::string::npos) << sentence(box);
+}
+
 // Two rooms of 1 by 1 by 1 with a duct of 0.2 by 0.2 between them, about (1.25, 0.5, 0.5).
 TEST(PaintFront, RegionThatHoldsAKeepOutPointLeaks) {
   const auto duct = [](const Vec3& c) {

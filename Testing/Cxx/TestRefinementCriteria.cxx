@@ -393,6 +393,8 @@ TEST(RefinementCriteria, FeatureDepthAsNeeded) {
   const double h = edgeAt(rim, Vec3(1 - 1e-4, 1e-4, 1e-4));
   EXPECT_LE(h * h / 8, 2 * 0.04 / 20);  // the sag over a cell's edge, with room for its diagonal
   EXPECT_GT(h, 0.04 - 1e-12);
+  const auto buffer = static_cast<std::uint8_t>(RefineReason::FeatureBuffer);
+  EXPECT_GT(std::count(rim.refinedBy.begin(), rim.refinedBy.end(), buffer), 0) << "beside the rim as on it";
 }
 
 TEST(RefinementCriteria, RefusesSizesThatMakeNoSense) {

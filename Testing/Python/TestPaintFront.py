@@ -91,6 +91,28 @@ class TestPaintFront(unittest.TestCase):
         self.assertLess(max(abs(bottleneck[0]), abs(bottleneck[1]), abs(bottleneck[2] - 0.47)), 0.04)
         self.assertAlmostEqual(arrays(leaks)["cell NarrowestWidth"][0], 0.34, delta=0.03)
 
+    def test_room_behind_a_narrow_opening_is_warned_of(self):
+        source = vtkSphereSource()  # open about its north pole: a hole 0.26 wide
+        source.SetThetaResolution(32)
+        source.SetPhiResolution(32)
+        source.SetStartPhi(15)
+        source.Update()
+        self.geometry = source.GetOutput()
+        front = self.front(chain(self.geometry, 0.04, last=1, SurfaceSize=0.04)[0].GetOutput(), Region=1)
+        messages = Messages(front)
+        front.Update()
+        self.assertEqual((len(messages.errors), len(messages.warnings)), (0, 1))
+        self.assertIn("a room", messages.warnings[0])
+        self.assertGreater(front.GetOutputDataObject(0).GetNumberOfCells(), 0)
+        leaks = front.GetOutputDataObject(pm.vtkPaintFront.LEAKS)
+        self.assertEqual((leaks.GetNumberOfLines(), leaks.GetNumberOfVerts()), (1, 1))
+        bottleneck = leaks.GetPoint(leaks.GetVerts().GetConnectivityArray().GetValue(0))
+        self.assertLess(max(abs(bottleneck[0]), abs(bottleneck[1]), abs(bottleneck[2] - 0.483)), 0.04)
+        front.ReportLeaksOff()
+        front.Update()
+        self.assertEqual(len(messages.warnings), 1)
+        self.assertEqual(front.GetOutputDataObject(pm.vtkPaintFront.LEAKS).GetNumberOfCells(), 0)
+
     def two_spheres(self):
         small = vtkTransform()
         small.Translate(1.2, 0, 0)
