@@ -19,10 +19,15 @@ constexpr double kSmallStep = 0.02;
 // enough that the octree cells below take up most of the stretch.
 constexpr double kPrismHeight = 0.4;
 constexpr int kFlatteningSweeps = 3;
-// A node farther than this from the geometry after projection, in length scales, is stuck; rounds to free
-// such nodes.
+// Rounds after the front has arrived, in which it is only smoothed along the geometry.
+constexpr int kSettlingRounds = 2;
+// A node farther than this from the geometry after projection, in length scales, is stuck. Rounds to free
+// such nodes, and the part of them that may be left when another round is worth it.
 constexpr double kStuck = 0.02;
-constexpr int kFreeingRounds = 6;
+constexpr int kFreeingRounds = 12;
+constexpr double kWorthFreeing = 0.9;
+// Only points whose worst measure is this near its limit can be what holds a node.
+constexpr double kAtLimit = 0.8;
 // Octree nodes within so many edges of the bases may move; the core beyond keeps its perfect cells.
 constexpr int kInnerRings = 2;
 
@@ -51,12 +56,18 @@ class Projector {
     }
     for (int round = 0; round < rounds; ++round) {
       monitor.check(0.9 * round / rounds, "projection");
-      // The way is spread over the first half of the rounds, so that all parts of the front arrive together.
-      approach(1.0 / std::max(1, rounds / 2 - round));
+      // The way is spread over the first rounds, so that all parts of the front arrive together: at a thin
+      // edge, one side that comes first leaves the other no room.
+      approach(1.0 / std::max(1, rounds - kSettlingRounds - round));
       if (round % 3 == 2) smoothInner();
     }
-    for (int round = 0; round < kFreeingRounds && freeStuck(); ++round) {
+    Id before = wall_.size();
+    for (int round = 0; round < kFreeingRounds; ++round) {
       monitor.check(0.9 + 0.1 * round / kFreeingRounds, "freeing stuck nodes");
+      const std::vector<Id> stuck = stuckNodes();
+      if (stuck.empty() || stuck.size() > kWorthFreeing * before) break;
+      before = static_cast<Id>(stuck.size());
+      freeNodes(stuck);
       approach(1);
     }
     approach(1);
@@ -189,18 +200,24 @@ class Projector {
     });
   }
 
+  std::vector<Id> stuckNodes() const {
+    std::vector<Id> rows;
+    for (Id row = 0; row < wall_.size(); ++row)
+      if (distance_[row] >= kStuck * wall_.scale[row]) rows.push_back(row);
+    return rows;
+  }
+
   // A node short of the geometry is held by a cell at a limit, often by a single sheared prism. The points of
   // its cells search around themselves for a place where the worst measure is better (4.5, second strategy).
-  // False when no node is stuck.
-  bool freeStuck() {
+  void freeNodes(const std::vector<Id>& stuck) {
     std::vector<Id> around;
-    for (Id row = 0; row < wall_.size(); ++row) {
-      if (distance_[row] < kStuck * wall_.scale[row]) continue;
+    for (Id row : stuck)
       for (Id c : mover_.cellsOf(wall_.nodes[row]))
         around.insert(around.end(), mover_.pointsOf(c).begin(), mover_.pointsOf(c).end());
-    }
     std::sort(around.begin(), around.end());
     around.erase(std::unique(around.begin(), around.end()), around.end());
+    const auto atEase = [&](Id p) { return mover_.badness(p) < kAtLimit; };
+    around.erase(std::remove_if(around.begin(), around.end(), atEase), around.end());
     mover_.forEach(mover_.colour(around), [&](Id p) {
       if (!worthTrying(p, freeTried_[p])) return;
       double worst = mover_.badness(p);
@@ -212,7 +229,6 @@ class Projector {
         }
       }
     });
-    return !around.empty();
   }
 
   // Rings of nodes below the bases, by cells.
