@@ -22,10 +22,11 @@ constexpr int kFlatteningSweeps = 3;
 // Rounds after the front has arrived, in which it is only smoothed along the geometry.
 constexpr int kSettlingRounds = 2;
 // A node farther than this from the geometry after projection, in length scales, is stuck. Rounds to free
-// such nodes, and the part of them that may be left when another round is worth it.
+// such nodes, and the part of them that may be left when another round is worth it; while they are few, of all
+// wall nodes, it always is.
 constexpr double kStuck = 0.02;
 constexpr int kFreeingRounds = 12;
-constexpr double kWorthFreeing = 0.9;
+constexpr double kWorthFreeing = 0.9, kFew = 0.002;
 // Only points whose worst measure is this near its limit can be what holds a node.
 constexpr double kAtLimit = 0.8;
 // Octree nodes within so many edges of the bases may move; the core beyond keeps its perfect cells.
@@ -65,7 +66,7 @@ class Projector {
     for (int round = 0; round < kFreeingRounds; ++round) {
       monitor.check(0.9 + 0.1 * round / kFreeingRounds, "freeing stuck nodes");
       const std::vector<Id> stuck = stuckNodes();
-      if (stuck.empty() || stuck.size() > kWorthFreeing * before) break;
+      if (stuck.empty() || stuck.size() > std::max(kWorthFreeing * before, kFew * wall_.size())) break;
       before = static_cast<Id>(stuck.size());
       freeNodes(stuck);
       approach(1);
