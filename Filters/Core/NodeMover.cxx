@@ -27,6 +27,38 @@ double cosine(const Vec3& normal, const Vec3& direction) {
 
 }  // namespace
 
+const char* describe(Refusal refusal) {
+  switch (refusal) {
+    case Refusal::None:
+      return "nothing";
+    case Refusal::Eta:
+      return "degradation of a face";
+    case Refusal::Warpage:
+      return "warpage of a face";
+    case Refusal::Volume:
+      return "volume of a cell";
+    case Refusal::CentralTet:
+      return "central tetrahedron of a cell";
+    case Refusal::FacePyramid:
+      return "face pyramid of a cell";
+    case Refusal::Determinant:
+      return "determinant of a cell";
+    case Refusal::Angle:
+      return "angle of a face";
+    case Refusal::Skewness:
+      return "skewness of a face";
+    case Refusal::FaceWeight:
+      return "weight of a face";
+    case Refusal::VolumeRatio:
+      return "volume ratio of a face";
+    case Refusal::FaceTet:
+      return "decomposition tetrahedron of a face";
+    case Refusal::Other:
+      break;
+  }
+  return "its neighbours";
+}
+
 /// What one attempt touches and how it was before; reused from attempt to attempt, one for each thread.
 struct NodeMover::Touched {
   std::vector<Id> shapes;  // faces of the points: their shape changes
@@ -158,30 +190,34 @@ void NodeMover::relate(Id f) {
   }
 }
 
-bool NodeMover::faceShapeHolds(Id f, const FaceMeasures& old) const {
+Refusal NodeMover::shapeRefuses(Id f, const FaceMeasures& old) const {
   const FaceMeasures& now = faces_[f].shape;
-  const double minEta = f < mesh_.internalFaces() ? limits_.minEtaInternal : limits_.minEtaBoundary;
-  return (now.eta >= minEta || now.eta >= old.eta) &&
-         (now.cosWarpage >= cosWarpage_ || now.cosWarpage >= old.cosWarpage);
+  const double minEta = isInternal(f) ? limits_.minEtaInternal : limits_.minEtaBoundary;
+  if (!(now.eta >= minEta || now.eta >= old.eta)) return Refusal::Eta;
+  if (!(now.cosWarpage >= cosWarpage_ || now.cosWarpage >= old.cosWarpage)) return Refusal::Warpage;
+  return Refusal::None;
 }
 
-bool NodeMover::faceAngleHolds(Id f, const FaceState& old) const {
+Refusal NodeMover::angleRefuses(Id f, const FaceState& old) const {
   const FaceState& now = faces_[f];
   const bool internal = isInternal(f);
   const double minCos = internal ? cosInternal_ : cosBoundary_;
   const double maxSkew = internal ? limits_.maxSkewInternal : limits_.maxSkewBoundary;
-  return (now.cosAngle >= minCos || now.cosAngle >= old.cosAngle) &&
-         (now.skew <= maxSkew || now.skew <= old.skew) &&
-         (now.weight >= minWeight_ || now.weight >= old.weight) &&
-         (now.volumeRatio >= minRatio_ || now.volumeRatio >= old.volumeRatio) &&
-         (now.tet >= minTet_ || now.tet >= old.tet);
+  if (!(now.cosAngle >= minCos || now.cosAngle >= old.cosAngle)) return Refusal::Angle;
+  if (!(now.skew <= maxSkew || now.skew <= old.skew)) return Refusal::Skewness;
+  if (!(now.weight >= minWeight_ || now.weight >= old.weight)) return Refusal::FaceWeight;
+  if (!(now.volumeRatio >= minRatio_ || now.volumeRatio >= old.volumeRatio)) return Refusal::VolumeRatio;
+  if (!(now.tet >= minTet_ || now.tet >= old.tet)) return Refusal::FaceTet;
+  return Refusal::None;
 }
 
-bool NodeMover::cellHolds(const CellState& now, const CellState& old) const {
-  return (now.volume >= minVolume_ || now.volume >= old.volume) &&
-         (now.minTet >= minTet_ || now.minTet >= old.minTet) &&
-         (now.minPyramid >= minTet_ || now.minPyramid >= old.minPyramid) &&
-         (now.determinant >= limits_.minDeterminant || now.determinant >= old.determinant);
+Refusal NodeMover::cellRefuses(const CellState& now, const CellState& old) const {
+  if (!(now.volume >= minVolume_ || now.volume >= old.volume)) return Refusal::Volume;
+  if (!(now.minTet >= minTet_ || now.minTet >= old.minTet)) return Refusal::CentralTet;
+  if (!(now.minPyramid >= minTet_ || now.minPyramid >= old.minPyramid)) return Refusal::FacePyramid;
+  if (!(now.determinant >= limits_.minDeterminant || now.determinant >= old.determinant))
+    return Refusal::Determinant;
+  return Refusal::None;
 }
 
 double NodeMover::badnessOfShape(const FaceMeasures& shape, bool internal) const {
@@ -250,37 +286,37 @@ bool NodeMover::isBetter(const Touched& t) const {
 
 // Cheapest checks first; each notes what it changes, and ends the attempt at the first measure that is out of
 // its limit or worse than `worst`.
-bool NodeMover::tryShapes(Touched& t, double worst) {
+Refusal NodeMover::tryShapes(Touched& t, double worst) {
   for (Id f : t.shapes) {
     t.oldShapes.push_back(faces_[f].shape);
     faces_[f].shape = measureFace(mesh_.points, mesh_.faces[f]);
-    if (!faceShapeHolds(f, t.oldShapes.back())) return false;
-    if (worst < kAny && badnessOfShape(faces_[f].shape, isInternal(f)) > worst) return false;
+    if (const Refusal r = shapeRefuses(f, t.oldShapes.back()); r != Refusal::None) return r;
+    if (worst < kAny && badnessOfShape(faces_[f].shape, isInternal(f)) > worst) return Refusal::Other;
   }
-  return true;
+  return Refusal::None;
 }
 
-bool NodeMover::tryCells(Touched& t, double worst) {
+Refusal NodeMover::tryCells(Touched& t, double worst) {
   for (Id c : t.cells) {
     t.oldCells.push_back(cells_[c]);
     cells_[c] = cellNow(c);
-    if (!cellHolds(cells_[c], t.oldCells.back())) return false;
-    if (worst < kAny && badnessOfCell(cells_[c]) > worst) return false;
+    if (const Refusal r = cellRefuses(cells_[c], t.oldCells.back()); r != Refusal::None) return r;
+    if (worst < kAny && badnessOfCell(cells_[c]) > worst) return Refusal::Other;
   }
-  return true;
+  return Refusal::None;
 }
 
-bool NodeMover::tryAngles(Touched& t, double worst) {
+Refusal NodeMover::tryAngles(Touched& t, double worst) {
   for (Id c : t.cells)
     for (Id f : cellFaces_[c]) t.faces.push_back(f);
   sortUnique(t.faces);
   for (Id f : t.faces) {
     t.oldFaces.push_back(faces_[f]);
     relate(f);
-    if (!faceAngleHolds(f, t.oldFaces.back())) return false;
-    if (worst < kAny && badnessOfAngle(faces_[f], isInternal(f)) > worst) return false;
+    if (const Refusal r = angleRefuses(f, t.oldFaces.back()); r != Refusal::None) return r;
+    if (worst < kAny && badnessOfAngle(faces_[f], isInternal(f)) > worst) return Refusal::Other;
   }
-  return true;
+  return Refusal::None;
 }
 
 void NodeMover::undo(const Id* points, const Touched& t) {
@@ -290,8 +326,8 @@ void NodeMover::undo(const Id* points, const Touched& t) {
   for (std::size_t i = 0; i < t.oldCells.size(); ++i) cells_[t.cells[i]] = t.oldCells[i];
 }
 
-bool NodeMover::attempt(const Id* points, const Vec3* targets, std::size_t count, double worst,
-                        const std::function<bool()>& accept) {
+Refusal NodeMover::attempt(const Id* points, const Vec3* targets, std::size_t count, double worst,
+                           const std::function<bool()>& accept) {
   const bool mustImprove = worst < kAny;
   thread_local Touched t;
   t.oldPoints.clear();
@@ -303,19 +339,23 @@ bool NodeMover::attempt(const Id* points, const Vec3* targets, std::size_t count
   };
   for (std::size_t i = 0; i < count; ++i) t.oldPoints.push_back(mesh_.points[points[i]]);
   forEachFree([&](double x, double to) { moves = moves || x != to; });
-  if (!moves) return !mustImprove && (!accept || accept());
+  if (!moves) return !mustImprove && (!accept || accept()) ? Refusal::None : Refusal::Other;
   gather(points, count, t);
   forEachFree([&](double& x, double to) { x = to; });
-  if (!tryShapes(t, worst) || (accept && !accept()) || !tryCells(t, worst) || !tryAngles(t, worst) ||
-      (mustImprove && !isBetter(t))) {
+  Refusal refusal = tryShapes(t, worst);
+  if (refusal == Refusal::None && accept && !accept()) refusal = Refusal::Other;
+  if (refusal == Refusal::None) refusal = tryCells(t, worst);
+  if (refusal == Refusal::None) refusal = tryAngles(t, worst);
+  if (refusal == Refusal::None && mustImprove && !isBetter(t)) refusal = Refusal::Other;
+  if (refusal != Refusal::None) {
     undo(points, t);
-    return false;
+    return refusal;
   }
   for (Id f : t.faces) {
     changed_[mesh_.owner[f]].store(tick_, std::memory_order_relaxed);
     if (f < mesh_.internalFaces()) changed_[mesh_.neighbour[f]].store(tick_, std::memory_order_relaxed);
   }
-  return true;
+  return Refusal::None;
 }
 
 Id NodeMover::lastChange(Id p) const {
@@ -331,7 +371,7 @@ Id NodeMover::lastChange(Id p) const {
 bool NodeMover::improveTogether(const std::vector<Id>& points, const std::vector<Vec3>& targets) {
   double worst = 0;
   for (Id p : points) worst = std::max(worst, badness(p));
-  return attempt(points.data(), targets.data(), points.size(), worst);
+  return attempt(points.data(), targets.data(), points.size(), worst) == Refusal::None;
 }
 
 double NodeMover::drift(Id p, const Vec3& target, int halvings) {

@@ -12,6 +12,7 @@
 #include <tbb/parallel_for.h>
 
 #include <atomic>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <vector>
@@ -20,6 +21,25 @@
 
 namespace pm {
 
+/// What refuses a move: the first limit found broken, or Other, when the caller does not want it.
+enum class Refusal : std::uint8_t {
+  None,
+  Eta,
+  Warpage,
+  Volume,
+  CentralTet,
+  FacePyramid,
+  Determinant,
+  Angle,
+  Skewness,
+  FaceWeight,
+  VolumeRatio,
+  FaceTet,
+  Other
+};
+/// In words, e.g. "warpage of a face".
+const char* describe(Refusal refusal);
+
 class NodeMover {
  public:
   /// Points move in place. The topology must not change while the mover lives.
@@ -27,12 +47,14 @@ class NodeMover {
   NodeMover(PolyMesh& mesh, const QualityLimits& limits, const Monitor* monitor = nullptr);
 
   /// Moves p to target (its fixed coordinates stay); true when kept.
-  bool move(Id p, const Vec3& target) { return attempt(&p, &target, 1, kAny); }
+  bool move(Id p, const Vec3& target) { return tryMove(p, target) == Refusal::None; }
+  /// The same, and says why not; None when kept.
+  Refusal tryMove(Id p, const Vec3& target) { return attempt(&p, &target, 1, kAny); }
   /// As move, but kept only if accept() agrees. It is asked while the point is there and the shapes of its
   /// faces are current, before the costly checks.
   template <class Accept>
   bool moveIf(Id p, const Vec3& target, const Accept& accept) {
-    return attempt(&p, &target, 1, kAny, std::cref(accept));
+    return attempt(&p, &target, 1, kAny, std::cref(accept)) == Refusal::None;
   }
   /// As move, but a refused target is pulled back half way, up to `halvings` times. Returns the kept fraction
   /// of the way, 0 when the point stayed.
@@ -41,14 +63,16 @@ class NodeMover {
   /// strategy).
   bool improve(Id p, const Vec3& target) { return improve(p, target, badness(p)); }
   /// The same where badness(p) is known, as when several places are tried.
-  bool improve(Id p, const Vec3& target, double badness) { return attempt(&p, &target, 1, badness); }
+  bool improve(Id p, const Vec3& target, double badness) {
+    return attempt(&p, &target, 1, badness) == Refusal::None;
+  }
   /// Moves several points at once, all or none.
   bool moveTogether(const std::vector<Id>& points, const std::vector<Vec3>& targets) {
-    return attempt(points.data(), targets.data(), points.size(), kAny);
+    return attempt(points.data(), targets.data(), points.size(), kAny) == Refusal::None;
   }
   template <std::size_t N>
   bool moveTogether(const Id (&points)[N], const Vec3 (&targets)[N]) {
-    return attempt(points, targets, N, kAny);
+    return attempt(points, targets, N, kAny) == Refusal::None;
   }
   bool improveTogether(const std::vector<Id>& points, const std::vector<Vec3>& targets);
   /// Worst measure around a point relative to its limit: below 1 is valid, above 1 is not.
@@ -106,18 +130,18 @@ class NodeMover {
   static constexpr double kAny = std::numeric_limits<double>::infinity();
 
   /// worst: kept only if better, from this badness on; kAny: if valid.
-  bool attempt(const Id* points, const Vec3* targets, std::size_t count, double worst,
-               const std::function<bool()>& accept = {});
+  Refusal attempt(const Id* points, const Vec3* targets, std::size_t count, double worst,
+                  const std::function<bool()>& accept = {});
   void gather(const Id* points, std::size_t count, Touched& t) const;
-  bool tryShapes(Touched& t, double worst);
-  bool tryCells(Touched& t, double worst);
-  bool tryAngles(Touched& t, double worst);
+  Refusal tryShapes(Touched& t, double worst);
+  Refusal tryCells(Touched& t, double worst);
+  Refusal tryAngles(Touched& t, double worst);
   void undo(const Id* points, const Touched& t);
   void relate(Id f);
   bool isBetter(const Touched& t) const;
-  bool faceShapeHolds(Id f, const FaceMeasures& old) const;
-  bool faceAngleHolds(Id f, const FaceState& old) const;
-  bool cellHolds(const CellState& now, const CellState& old) const;
+  Refusal shapeRefuses(Id f, const FaceMeasures& old) const;
+  Refusal angleRefuses(Id f, const FaceState& old) const;
+  Refusal cellRefuses(const CellState& now, const CellState& old) const;
   bool isInternal(Id f) const { return f < mesh_.internalFaces(); }
   double badnessOfShape(const FaceMeasures& shape, bool internal) const;
   double badnessOfAngle(const FaceState& s, bool internal) const;

@@ -22,8 +22,8 @@ constexpr int kFlatteningSweeps = 3;
 // Rounds after the front has arrived, in which it is only smoothed along the geometry.
 constexpr int kSettlingRounds = 2;
 // A node farther than this from the geometry after projection, in length scales, is stuck. Rounds to free
-// such nodes, and the part of them that may be left when another round is worth it; while they are few, of all
-// wall nodes, it always is.
+// such nodes, and the part of them that may be left when another round is worth it; while they are few, of
+// all wall nodes, it always is.
 constexpr double kStuck = 0.02;
 constexpr int kFreeingRounds = 12;
 constexpr double kWorthFreeing = 0.9, kFew = 0.002;
@@ -47,6 +47,20 @@ class Projector {
     innerTried_.assign(mesh.points.size(), 0);
     freeTried_ = innerTried_;
     collectInner();
+  }
+
+  /// Wall nodes still short of the geometry, each with what refuses its way there; one that may go, goes.
+  std::vector<StuckNode> tellStuck() {
+    std::vector<StuckNode> stuck;
+    for (Id row : stuckNodes()) {
+      const Id p = wall_.nodes[row];
+      const Vec3 target = field_.closest(mesh_.points[p]).point;
+      const Refusal refusal = mover_.tryMove(p, target);
+      const double distance = (target - mesh_.points[p]).norm();
+      if (distance >= kStuck * wall_.scale[row])
+        stuck.push_back({mesh_.points[p], distance, describe(refusal)});
+    }
+    return stuck;
   }
 
   void run(Monitor& monitor) {
@@ -272,13 +286,17 @@ class Projector {
 
 }  // namespace
 
-void project(PolyMesh& mesh, DistanceField& field, const ProjectOptions& options, Monitor& monitor) {
+void project(PolyMesh& mesh, DistanceField& field, const ProjectOptions& options, Monitor& monitor,
+             std::vector<StuckNode>* stuck) {
   monitor.check(0, "distance field");
   std::vector<Vec3> walls;
   for (std::size_t p = 0; p < mesh.points.size(); ++p)
     if (mesh.base[p] != kNone) walls.push_back(mesh.points[p]);
   field.fill(walls);
-  Projector(mesh, field, options, monitor).run(monitor);
+  Projector projector(mesh, field, options, monitor);
+  projector.run(monitor);
+  const std::vector<StuckNode> told = projector.tellStuck();
+  if (stuck != nullptr) *stuck = told;
   mesh.stage = Stage::Projected;
   canonicalise(mesh);
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "DummyLayer.h"
 #include "OctreeDecompose.h"
@@ -52,6 +53,32 @@ TEST(Project, ACylindersWallIsOnTheCylinder) {
   EXPECT_GT(within(mesh, *model, 1e-3 * 0.1), 0.999);
   EXPECT_NEAR(q.totalVolume, 2 * 3.14159, 0.03 * 2 * 3.14159);
   EXPECT_EQ(mesh.stage, Stage::Projected);
+}
+
+TEST(Project, SaysWhatHoldsANodeThatStaysShort) {
+  const auto model = cylinder(64).model();
+  Monitor monitor;
+  PolyMesh free = layered(*model, 0.1), held = free;
+  DistanceField field(*model, free.finestSize);
+  std::vector<StuckNode> none, stuck;
+  project(free, field, {}, monitor, &none);
+  EXPECT_TRUE(none.empty());
+  // Faces that may not warp cannot follow a curved wall.
+  ProjectOptions stiff;
+  stiff.limits.maxWarpage = 2;
+  project(held, field, stiff, monitor, &stuck);
+  ASSERT_FALSE(stuck.empty());
+  EXPECT_TRUE(std::any_of(stuck.begin(), stuck.end(),
+                          [](const StuckNode& s) { return s.heldBy == std::string("warpage of a face"); }));
+  for (const StuckNode& s : stuck) {
+    EXPECT_GT(s.distance, 0.005 * 0.1);
+    EXPECT_NEAR(s.distance, std::sqrt(model->closest(s.position).distance2), 1e-12);
+    EXPECT_EQ(std::count(held.points.begin(), held.points.end(), s.position), 1);
+  }
+  // Whoever is not told of is there.
+  const double told = 1 - double(stuck.size()) / std::count_if(held.base.begin(), held.base.end(),
+                                                               [](Id b) { return b != kNone; });
+  EXPECT_GE(within(held, *model, 0.02 * 0.1), told - 1e-12);
 }
 
 TEST(Project, ADirtySoupStillEndsValid) {

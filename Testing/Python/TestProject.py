@@ -29,6 +29,23 @@ class TestProject(unittest.TestCase):
         for name, values in before.items():
             self.assertTrue(np.array_equal(values, after[name]), name)
 
+    def test_nodes_that_stay_short_are_listed_with_what_holds_them(self):
+        stages = chain(sphere(64), 0.05, last=3)
+        project = pm.vtkProject()
+        project.SetInputConnection(0, stages[2].GetOutputPort())
+        project.SetInputDataObject(1, sphere(64))
+        project.SetMaximumWarpage(1)
+        project.Update()
+        data = project.GetOutputDataObject(1).GetFieldData()
+        held = data.GetAbstractArray("StuckBy")
+        reasons = [held.GetValue(i) for i in range(held.GetNumberOfValues())]
+        self.assertIn("warpage of a face", reasons)
+        self.assertEqual(data.GetArray("StuckPosition").GetNumberOfTuples(), len(reasons))
+        self.assertGreater(data.GetArray("StuckDistance").GetRange()[0], 0)
+        project.SetMaximumWarpage(72)
+        project.Update()
+        self.assertEqual(project.GetOutputDataObject(1).GetFieldData().GetAbstractArray("StuckBy").GetNumberOfValues(), 0)
+
     def test_front_without_layer_is_refused(self):
         stages = chain(sphere(), 0.1, last=2)
         project = pm.vtkProject()
