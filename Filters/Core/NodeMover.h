@@ -100,6 +100,13 @@ class NodeMover {
   /// When something last moved that the measures around p and, for a wall point, around its base depend on.
   /// What failed at a later tick fails again.
   Id lastChange(Id p) const;
+  /// False when nothing around the point has moved since the attempt that `tried` remembers: another would
+  /// end as that one. Notes an attempt otherwise; 0 is none yet.
+  bool worthTrying(Id p, Id& tried) const {
+    if (lastChange(p) < tried) return false;
+    tried = tick_;
+    return true;
+  }
 
   const PolyMesh& mesh() const { return mesh_; }
   const Vec3& point(Id p) const { return mesh_.points[p]; }

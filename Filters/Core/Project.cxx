@@ -89,14 +89,6 @@ class Projector {
   }
 
  private:
-  /// False when nothing around the point has moved since the attempt that `tried` remembers: another would
-  /// end as that one. Notes an attempt otherwise.
-  bool worthTrying(Id p, Id& tried) const {
-    if (mover_.lastChange(p) < tried) return false;
-    tried = mover_.tick();
-    return true;
-  }
-
   /// Outward unit normal of the wall at a node, from the faces around it.
   Vec3 normalAt(Id p) const {
     const Vec3 n = mover_.areaVector(wall_.faces[wall_.rowOf[p]]);
@@ -172,7 +164,7 @@ class Projector {
     placeBases();
     mover_.forEach(wallGroups_, [&](Id p) {
       const Id row = wall_.rowOf[p];
-      if (worthTrying(p, tried_[row])) approachNode(p, row, part);
+      if (mover_.worthTrying(p, tried_[row])) approachNode(p, row, part);
     });
   }
 
@@ -207,7 +199,7 @@ class Projector {
   // 4.5.1: Laplacian, kept only where the worst local measure gets better.
   void smoothInner() {
     mover_.forEach(innerGroups_, [&](Id p) {
-      if (!worthTrying(p, innerTried_[p])) return;
+      if (!mover_.worthTrying(p, innerTried_[p])) return;
       Vec3 mean = Vec3::Zero();
       for (Id c : mover_.cellsOf(p)) mean += mover_.cellCentre(c);
       const Vec3 step = 0.5 * (mean / double(mover_.cellsOf(p).size()) - mesh_.points[p]);
@@ -234,7 +226,7 @@ class Projector {
     const auto atEase = [&](Id p) { return mover_.badness(p) < kAtLimit; };
     around.erase(std::remove_if(around.begin(), around.end(), atEase), around.end());
     mover_.forEach(mover_.colour(around), [&](Id p) {
-      if (!worthTrying(p, freeTried_[p])) return;
+      if (!mover_.worthTrying(p, freeTried_[p])) return;
       double worst = mover_.badness(p);
       for (double step : {0.2, 0.07}) {
         for (int k = 0; k < 6; ++k) {

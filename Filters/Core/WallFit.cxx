@@ -39,7 +39,7 @@ class WallFitter {
 
   void fit(Id p) {
     const Id row = wall_.rowOf[p];
-    if (!worthTrying(p, fitTried_[row])) return;
+    if (!mover_.worthTrying(p, fitTried_[row])) return;
     Vec3 n = mover_.areaVector(wall_.faces[row]);
     if (!(n.norm() > 0)) return;
     n.normalize();
@@ -55,7 +55,7 @@ class WallFitter {
   // the node tries places around it on the surface.
   void search(Id p) {
     const Id row = wall_.rowOf[p];
-    if (!worthTrying(p, searchTried_[row])) return;
+    if (!mover_.worthTrying(p, searchTried_[row])) return;
     const Vec3 n = mover_.areaVector(wall_.faces[row]);
     double best = look(p);
     if (!(n.norm() > 0) || best < std::pow(kFar, 4)) return;
@@ -75,13 +75,6 @@ class WallFitter {
   }
 
  private:
-  /// False when nothing around the point has moved since the attempt that `tried` remembers.
-  bool worthTrying(Id p, Id& tried) const {
-    if (mover_.lastChange(p) < tried) return false;
-    tried = mover_.tick();
-    return true;
-  }
-
   Around around(Id p) const {
     const Id row = wall_.rowOf[p];
     const Vec3& x = mover_.point(p);
