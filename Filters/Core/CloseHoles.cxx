@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "OffsetCaps.h"
 
@@ -56,6 +57,25 @@ std::vector<Vec3> placesOf(const std::vector<Pocket>& pockets, const Octree& tre
   return places;
 }
 
+/// Of the leaves inside; endless where they reach the octree's own sides, behind which a room may go on.
+Box boxOf(const Octree& tree, const std::vector<Side>& sides) {
+  Box box;
+  Coord end;
+  for (int a = 0; a < 3; ++a) end[a] = tree.brick.extent(a);
+  const Box whole{tree.brick.position({0, 0, 0}), tree.brick.position(end)};
+  for (Id leaf = 0; leaf < tree.size(); ++leaf) {
+    if (sides[leaf] != Side::Inside) continue;
+    box.add(tree.box(leaf).lo);
+    box.add(tree.box(leaf).hi);
+  }
+  constexpr double endless = std::numeric_limits<double>::infinity();
+  for (int a = 0; a < 3; ++a) {
+    if (box.lo[a] <= whole.lo[a]) box.lo[a] = -endless;
+    if (box.hi[a] >= whole.hi[a]) box.hi[a] = endless;
+  }
+  return box;
+}
+
 /// Search and closing of one round; holes found now are appended to the report.
 class Closer {
  public:
@@ -81,7 +101,7 @@ class Closer {
       const bool left = remember(found.leaks);
       report_.tight = !left;
       if (!left || options_.method == HoleMethod::ShowOnly) break;
-      close(tree, found.sides, round);
+      close(tree, found.sides, round, search);
     }
     report_.addedTriangles = work_.added();
     finish();
@@ -104,10 +124,10 @@ class Closer {
     return !fresh_.empty();
   }
 
-  void close(const Octree& tree, const std::vector<Side>& sides, int round) {
+  void close(const Octree& tree, const std::vector<Side>& sides, int round, const LeakOptions& search) {
     // A cap that does not seal is not made better by another one: later rounds use membranes.
     if (options_.method == HoleMethod::Offset && round == 0) {
-      addCaps(tree, sides);
+      addCaps(tree, sides, search);
     } else {
       for (std::size_t h : fresh_) {
         const Membrane& m = report_.holes[h].leak.membrane;
@@ -118,7 +138,7 @@ class Closer {
     current_ = work_.model();
   }
 
-  void addCaps(const Octree& tree, const std::vector<Side>& sides) {
+  void addCaps(const Octree& tree, const std::vector<Side>& sides, const LeakOptions& search) {
     const double cell = tree.brick.edge(tree.brick.maxLevel);
     OffsetOptions o;
     std::vector<const Leak*> holes;
@@ -127,9 +147,11 @@ class Closer {
       o.coarseSize =
           std::max(o.coarseSize, sealingSize(holes.back()->width, tree.brick, RootCells::FromFeature));
     }
-    o.offset = 0.5 * cell;
+    o.offset = 0.1 * cell;
+    o.seals = [&](const Caps& caps) { return seals(caps, search); };
     o.overlap = 2 * cell;
     o.finest = cell;
+    o.rooms = boxOf(tree, sides);
     const auto inside = [&](const Vec3& p) {
       const Id leaf = tree.locate(p);
       return leaf != kNone && sides[leaf] == Side::Inside;
@@ -137,6 +159,15 @@ class Closer {
     const Caps caps = offsetCaps(model_, octree_, o, inside, holes, monitor_);
     report_.coarseSize = caps.coarseSize;
     work_.add(caps.points, caps.triangles);
+  }
+
+  bool seals(const Caps& caps, const LeakOptions& search) {
+    Patchwork trial = work_;
+    trial.add(caps.points, caps.triangles);
+    const auto model = trial.model();
+    const LeakSearch found = findLeaks(decompose(*model, octree_, monitor_), *model, search, monitor_);
+    return std::none_of(found.leaks.begin(), found.leaks.end(),
+                        [&](const Leak& leak) { return wanted(leak, options_); });
   }
 
   void finish() {

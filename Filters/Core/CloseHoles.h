@@ -5,7 +5,7 @@
 // Two ways. CoarseToFine (3.6.1): the thesis paints with cells from coarse to fine and blocks bottleneck
 // cells; its limit, one watershed over one octree, gives a membrane in each hole (Membrane.h). Offset
 // (3.6.2): a coarse octree that does not leak is meshed, and its wall, moved through the holes to the far
-// side of the geometry by half the smallest cell, covers them; only what covers a hole is kept, for elsewhere
+// side of the geometry by a tenth of a cell, covers them; only what covers a hole is kept, for elsewhere
 // the geometry itself is finer.
 //
 // Either is verified: the octree of the closed geometry is searched again, and what still leaks is closed in

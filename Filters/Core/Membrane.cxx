@@ -273,8 +273,10 @@ void quarter(std::vector<Vec3>& points, std::vector<std::array<Id, 3>>& triangle
 }
 
 // Gauss-Seidel in the order of points: twice as fast as Jacobi, and the same for any number of threads.
-void relax(Membrane& m, const SurfaceModel& model, double slide, Monitor& monitor) {
+void relax(Membrane& m, const SurfaceModel& model, double slide, Monitor& monitor,
+           const std::vector<std::uint8_t>& held) {
   const Csr<Id> graph = neighbours(m);
+  for (std::size_t p = 0; p < held.size(); ++p) m.onRim[p] |= held[p];
   for (std::size_t p = 0; p < m.points.size(); ++p)
     if (m.onRim[p]) m.points[p] = model.closest(m.points[p]).point;
   const std::vector<Vec3> start = m.points;
@@ -283,6 +285,7 @@ void relax(Membrane& m, const SurfaceModel& model, double slide, Monitor& monito
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     monitor.check(double(sweep) / sweeps, "membranes");
     for (Id p = 0; p < static_cast<Id>(m.points.size()); ++p) {
+      if (m.onRim[p] && slide <= 0) continue;
       Vec3 middle = Vec3::Zero();
       for (Id n : graph[p]) middle += m.points[n];
       middle /= double(graph[p].size());

@@ -36,8 +36,10 @@ struct Membrane {
 void quarter(std::vector<Vec3>& points, std::vector<std::array<Id, 3>>& triangles);
 
 /// Like a soap film: each point goes to the middle of its neighbours; points of the rim likewise, then onto
-/// the closest geometry, but no farther than `slide` from where they met it first.
-void relax(Membrane& m, const SurfaceModel& model, double slide, Monitor& monitor);
+/// the closest geometry, but no farther than `slide` from where they met it first. held: #P 1 = of the rim
+/// though the membrane goes on beyond; none when empty.
+void relax(Membrane& m, const SurfaceModel& model, double slide, Monitor& monitor,
+           const std::vector<std::uint8_t>& held = {});
 
 struct RimFilms;
 

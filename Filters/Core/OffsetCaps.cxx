@@ -16,6 +16,13 @@
 namespace pm {
 namespace {
 
+/// What a coarse mesh that is tried says of itself is nothing that the user should do something about.
+class Trials : public PartMonitor {
+ public:
+  explicit Trials(Monitor& whole) : PartMonitor(whole, 0, 1) {}
+  void warning(const std::string&) override {}
+};
+
 /// The octree of a feature size, with nothing that asks for other cells.
 Octree coarseOctree(const SurfaceModel& model, OctreeDecomposeOptions octree, double size, Monitor& monitor) {
   octree.featureSize = size;
@@ -56,6 +63,18 @@ std::unique_ptr<SurfaceModel> withMembranes(std::vector<Vec3> points,
       triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
   }
   return std::make_unique<SurfaceModel>(points, triangles, std::vector<Id>(triangles.size(), 0),
+                                        std::vector<std::string>{"surface"});
+}
+
+/// The triangles that reach into the box.
+std::unique_ptr<SurfaceModel> within(const Box& box, const SurfaceModel& model) {
+  std::vector<SurfaceModel::Triangle> triangles;
+  for (const SurfaceModel::Triangle& t : model.triangles()) {
+    Box own;
+    for (Id p : t) own.add(model.points()[p]);
+    if (own.overlaps(box)) triangles.push_back(t);
+  }
+  return std::make_unique<SurfaceModel>(model.points(), triangles, std::vector<Id>(triangles.size(), 0),
                                         std::vector<std::string>{"surface"});
 }
 
@@ -110,16 +129,39 @@ Caps nearHoles(const Caps& caps, const std::vector<const Leak*>& holes, double r
   return out;
 }
 
-/// What covers the holes, in triangles as fine as asked for.
-Caps fineNearHoles(const Caps& wall, const std::vector<const Leak*>& holes, const OffsetOptions& options) {
+// The coarse wall bulges into the room where a hole leaves it nothing to lie on.
+void settle(Caps& caps, const SurfaceModel& surface, double near, Monitor& monitor) {
+  std::vector<std::uint8_t> held(caps.points.size());
+  tbb::parallel_for(std::size_t(0), held.size(), [&](std::size_t i) {
+    held[i] = surface.closest(caps.points[i]).distance2 <= near * near;
+  });
+  Membrane film;
+  film.points.swap(caps.points);
+  film.triangles.swap(caps.triangles);
+  constexpr int mostRounds = 10;
+  constexpr double still = 0.02;  // of `near`
+  for (int round = 0; round < mostRounds; ++round) {
+    const std::vector<Vec3> before = film.points;
+    relax(film, surface, 0, monitor, held);
+    double moved = 0;
+    for (std::size_t i = 0; i < before.size(); ++i)
+      moved = std::max(moved, (film.points[i] - before[i]).norm());
+    if (moved < still * near) break;
+  }
+  caps.points.swap(film.points);
+  caps.triangles.swap(film.triangles);
+}
+
+/// The wall around the holes, in triangles as fine as asked for.
+Caps fineNearHoles(const Caps& wall, const std::vector<const Leak*>& holes, double reach, double finest) {
   constexpr int mostSplits = 6;
-  Caps caps = nearHoles(wall, holes, options.overlap);
+  Caps caps = nearHoles(wall, holes, reach);
   for (int split = 0; split < mostSplits; ++split) {
     double longest = 0;
     for (const auto& t : caps.triangles) longest = std::max(longest, longestEdge(caps, t));
-    if (longest <= options.finest) break;
+    if (longest <= finest) break;
     quarter(caps.points, caps.triangles);
-    caps = nearHoles(caps, holes, options.overlap);
+    caps = nearHoles(caps, holes, reach);
   }
   return caps;
 }
@@ -128,40 +170,6 @@ Caps fineNearHoles(const Caps& wall, const std::vector<const Leak*>& holes, cons
 bool coversAll(const Caps& caps, const std::vector<const Leak*>& holes, double reach) {
   return std::none_of(holes.begin(), holes.end(),
                       [&](const Leak* hole) { return nearHoles(caps, {hole}, reach).triangles.empty(); });
-}
-
-// Cells larger than the widest hole seal for certain; where they are too large for the room, somewhat smaller
-// ones that happen to seal will do. No cells seal an opening as wide as its room: there the coarse mesh ends
-// at the membranes.
-Caps coarsestThatWorks(const SurfaceModel& model, const OctreeDecomposeOptions& options,
-                       const OffsetOptions& wanted, const InsideTest& inside,
-                       const std::vector<const Leak*>& holes, Monitor& monitor) {
-  const auto made = [&](const SurfaceModel& surface, double size) {
-    Caps caps = fineNearHoles(wallOf(coarseMesh(surface, options, size, inside, monitor)), holes, wanted);
-    caps.coarseSize = size;
-    if (!coversAll(caps, holes, wanted.overlap)) throw RegionError("the cells do not reach every hole");
-    return caps;
-  };
-  double size = wanted.coarseSize;
-  for (double factor : {1.0, 0.8, 0.65, 0.5}) try {
-      size = factor * wanted.coarseSize;
-      if (size < model.bounds().size().maxCoeff()) return made(model, size);
-    } catch (const RegionError&) {
-      continue;
-    }
-  constexpr double coarser = 2;
-  size = std::min(size, coarser * wanted.finest);
-  try {
-    return made(*withMembranes(model.points(), model.triangles(), holes), size);
-  } catch (const RegionError& error) {
-    throw RegionError(
-        fmt::format("The holes cannot be covered from behind: neither cells of {:.4g}, which seal the "
-                    "widest, nor cells of "
-                    "{:.4g} up to the membranes mesh the room ({}). Close holes coarse to fine, or give a "
-                    "smaller maximum "
-                    "width.",
-                    wanted.coarseSize, size, error.what()));
-  }
 }
 
 std::vector<Vec3> normalsOf(const Caps& caps) {
@@ -193,14 +201,58 @@ void offset(Caps& caps, const SurfaceModel& model, double distance, double over)
   });
 }
 
+// Cells larger than the widest hole seal for certain; where they are too large for the room, somewhat smaller
+// ones that happen to seal will do. No cells seal an opening as wide as its room, and the wall of coarse ones
+// does not reach into a hole's corners: there the coarse mesh ends at the membranes. Where it cannot, caps
+// that seal in part are the result.
+Caps coarsestThatWorks(const SurfaceModel& model, const OctreeDecomposeOptions& options,
+                       const OffsetOptions& wanted, const InsideTest& inside,
+                       const std::vector<const Leak*>& holes, Monitor& monitor) {
+  const auto made = [&](const SurfaceModel& surface, double size) {
+    const Caps wall = wallOf(coarseMesh(surface, options, size, inside, monitor));
+    Caps caps = fineNearHoles(wall, holes, std::max(size, wanted.overlap), wanted.finest);
+    settle(caps, surface, wanted.finest, monitor);
+    caps = nearHoles(caps, holes, wanted.overlap);
+    caps.coarseSize = size;
+    offset(caps, model, wanted.offset, wanted.finest);
+    if (!coversAll(caps, holes, wanted.overlap)) throw RegionError("the cells do not reach every hole");
+    return caps;
+  };
+  double size = wanted.coarseSize;
+  Caps last;
+  for (double factor : {1.0, 0.8, 0.65, 0.5}) try {
+      size = factor * wanted.coarseSize;
+      if (size >= model.bounds().size().maxCoeff()) continue;
+      last = made(model, size);
+      if (wanted.seals(last)) return last;
+    } catch (const RegionError&) {
+      continue;
+    }
+  constexpr double coarser = 2;
+  size = std::min(size, coarser * wanted.finest);
+  try {
+    return made(*withMembranes(model.points(), model.triangles(), holes), size);
+  } catch (const RegionError& error) {
+    if (!last.triangles.empty()) return last;
+    throw RegionError(
+        fmt::format("The holes cannot be covered from behind: neither cells of {:.4g}, which seal the "
+                    "widest, nor cells of "
+                    "{:.4g} up to the membranes mesh the room ({}). Close holes coarse to fine, or give a "
+                    "smaller maximum "
+                    "width.",
+                    wanted.coarseSize, size, error.what()));
+  }
+}
+
 }  // namespace
 
 Caps offsetCaps(const SurfaceModel& model, const OctreeDecomposeOptions& octree, const OffsetOptions& options,
                 const InsideTest& inside, const std::vector<const Leak*>& holes, Monitor& monitor) {
-  Caps caps = coarsestThatWorks(model, octree, options, inside, holes, monitor);
-  monitor.check(0.8, "caps");
-  offset(caps, model, options.offset, options.finest);
-  return caps;
+  Box near = options.rooms;
+  near.lo.array() -= options.coarseSize;
+  near.hi.array() += options.coarseSize;
+  Trials trials(monitor);
+  return coarsestThatWorks(*within(near, model), octree, options, inside, holes, trials);
 }
 
 }  // namespace pm

@@ -255,6 +255,34 @@ TEST_P(ClosingMethods, TheClosedBodyHasTheVolumeOfTheWholeOne) {
 INSTANTIATE_TEST_SUITE_P(CloseHoles, ClosingMethods,
                          ::testing::Values(HoleMethod::CoarseToFine, HoleMethod::Offset));
 
+TEST(CloseHoles, AnOffsetCapIsSmoothAndLiesSnugly) {
+  const auto model = leakyCube(6 * kCell).model();
+  CloseHolesOptions options;
+  options.method = HoleMethod::Offset;
+  Monitor monitor;
+  CloseHolesReport report;
+  const auto closed = closeHoles(*model, cells(kCell), options, monitor, &report);
+  ASSERT_EQ(report.holes.size(), 1u) << "the cap seals at once";
+  for (Id t = model->triangleCount(); t < closed->triangleCount(); ++t)
+    for (int k = 0; k < 3; ++k) ASSERT_NEAR(closed->corner(t, k).x(), 0, 0.2 * kCell);
+}
+
+TEST(CloseHoles, OffsetLooksOnlyAtWhatIsNearTheRoom) {
+  Soup soup = leakyCube(6 * kCell);
+  soup.append(cube(1, true).mapped([](const Vec3& p) { return Vec3(5000 * p + Vec3(2, 0, 0)); }));
+  OctreeDecomposeOptions octree = cells(kCell);
+  octree.useDomain = true;
+  octree.domain = Box{Vec3::Constant(-0.5), Vec3::Constant(1.5)};
+  CloseHolesOptions options;
+  options.method = HoleMethod::Offset;
+  options.search.insidePoints = {Vec3(0.6, 0.4, 0.5)};
+  Monitor monitor;
+  CloseHolesReport report;
+  closeHoles(*soup.model(), octree, options, monitor, &report);
+  ASSERT_FALSE(report.holes.empty());
+  EXPECT_TRUE(report.tight);
+}
+
 TEST(CloseHoles, WideHolesStayOpenOnRequest) {
   const auto model = leakyCube(0.4, 0.2).model();
   CloseHolesOptions options;
