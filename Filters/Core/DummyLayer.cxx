@@ -116,6 +116,12 @@ class LayerBuilder {
     std::vector<Id> prism(in_.boundaryFaces(), kNone);
     Csr<Id> internal, boundary;
     std::vector<Id> owner, neighbour, boundaryOwner, patch;
+    const std::vector<FrontEdge> edges = frontEdges();
+    const std::size_t faces = in_.faceCount() + 2 * edges.size();  // a few too many: room, not a count
+    internal.offsets.reserve(faces + 1);
+    internal.values.reserve(in_.faces.values.size() + 6 * edges.size());
+    owner.reserve(faces);
+    neighbour.reserve(faces);
     for (Id f = 0; f < in_.internalFaces(); ++f) {
       internal.push(in_.faces[f]);
       owner.push_back(in_.owner[f]);
@@ -143,7 +149,7 @@ class LayerBuilder {
       boundaryOwner.push_back(prism[b]);
       patch.push_back(in_.patch[b]);
     }
-    for (const FrontEdge& e : frontEdges()) {
+    for (const FrontEdge& e : edges) {
       const std::array<Id, 4> quad{e.a, e.b, wallPoint_[e.b], wallPoint_[e.a]};
       if (isFront(e.other)) {
         internal.push(quad);
@@ -184,7 +190,7 @@ std::vector<Id> pointsInTrouble(const PolyMesh& mesh, const NodeMover& mover) {
 // Where the ideal directions give a prism outside the limits, points try small steps in all directions for a
 // better one: the layer's step 2 (Fig. 4-7), by search instead of by rule.
 void relax(PolyMesh& mesh, const QualityLimits& limits, Monitor& monitor) {
-  NodeMover mover(mesh, limits, &monitor);
+  NodeMover mover(mesh, limits, pointsNearWall(mesh, 0), &monitor);
   constexpr int kRounds = 12;
   for (int round = 0; round < kRounds; ++round) {
     monitor.check(0.3 + 0.6 * round / kRounds, "layer optimisation");

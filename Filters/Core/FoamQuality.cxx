@@ -122,10 +122,14 @@ double cellDeterminant(const Vec3* areas, std::size_t count, const Directions& s
   if (count == 0 || mean < kTiny) return 0;
   mean /= static_cast<double>(count);
   Eigen::Matrix3d tensor = Eigen::Matrix3d::Zero();
+  const double scale = 1 / mean;
   for (std::size_t i = 0; i < count; ++i) {
-    const Vec3 scaled = areas[i] / mean;
-    tensor += scaled * scaled.transpose();
+    const Vec3 scaled = scale * areas[i];
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b <= a; ++b) tensor(a, b) += scaled[a] * scaled[b];
   }
+  for (int a = 0; a < 3; ++a)
+    for (int b = a + 1; b < 3; ++b) tensor(a, b) = tensor(b, a);
   for (int a = 0; a < 3; ++a) {
     if (!solved[a]) tensor(a, a) = 1;
   }

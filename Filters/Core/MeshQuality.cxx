@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "QuadLanes.h"
+
 namespace pm {
 namespace {
 
@@ -111,6 +113,43 @@ FaceMeasures measureFan(const std::vector<Vec3>& points, Span<Id> row, bool quic
   return face;
 }
 
+/// measureFan for a quad; the same formulas, corner by corner at once.
+FaceMeasures measureQuad(const std::vector<Vec3>& points, Span<Id> row, bool quick) {
+  const Vec3 origin = points[row[0]];
+  FourVectors corner = quadCorners(points, row, origin);
+  const Vec3 average = 0.25 * corner.sum();
+  corner = corner - average;
+  FourVectors before = corner.before(), normal = before.cross(corner);
+  Four area = normal.length();
+
+  FaceMeasures face;
+  face.normal = 0.5 * normal.sum();
+  const double sum = area.sum();
+  const Vec3 shift = sum > 0 ? Vec3((area * (before + corner)).sum() / (3 * sum)) : Vec3(Vec3::Zero());
+  face.centre = origin + (average + shift);
+  if (quick) return face;
+
+  corner = corner - shift;
+  before = corner.before();
+  normal = before.cross(corner);
+  area = normal.length();
+  const Four length = corner.length(), previous = length.before(), edge = (corner - before).length();
+  const Four bound = larger(larger(previous, length), edge) * (previous + length + edge);
+  if (!(area.least() > 0)) {  // a triangle of no area has no quality, and no normal
+    face.eta = 0;
+    Fan<4> fan;
+    for (std::size_t i = 0; i < 4; ++i) fan.corner[i] = points[row[i]] - face.centre;
+    findNormals(fan);
+    face.cosWarpage = cosineOfWarpage(fan);
+    return face;
+  }
+  face.eta = 2 * std::sqrt(3.0) * (area / bound).least();
+  const FourVectors unit = (Four::all(1) / area) * normal;
+  face.cosWarpage =
+      std::clamp(std::min(unit.dot(unit.before()).least(), unit.dot(unit.across()).least()), -1.0, 1.0);
+  return face;
+}
+
 /// Different points of the faces, ascending.
 void gatherPoints(const PolyMesh& mesh, Span<Id> facesOfCell, std::vector<Id>& out) {
   out.clear();
@@ -156,7 +195,7 @@ FaceMeasures measureFace(const std::vector<Vec3>& points, Span<Id> row, bool qui
     case 3:
       return measureWith(Fan<3>());
     case 4:
-      return measureWith(Fan<4>());
+      return measureQuad(points, row, quick);
     case 5:
       return measureWith(Fan<5>());
     default:

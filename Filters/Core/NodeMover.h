@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Node drifting (thesis 4.4.1): a point moves only if every cell and face it touches keeps the limits.
 //
-// The mover caches face and cell measures of the whole mesh and keeps them current move by move; an undone
-// move restores points and caches to the bit. What a move touches: the cells around the point and all their
-// faces. Where a face or cell is outside a limit already, a move may not make it worse.
+// The mover caches measures of what moves can touch and keeps them current move by move; an undone move
+// restores points and caches to the bit. What a move touches: the cells around the point and all their faces.
+// Where a face or cell is outside a limit already, a move may not make it worse.
+//
+// Named the points that may move, the mover caches their cells and the faces of those (some 80 bytes each,
+// and as much for the cells on the rim), and refuses to move any other point.
+//
+// What only compares a face with its limits is kept in single precision, rounded to the side of the limit
+// where it is.
 //
 // The mover also notes when something last moved around each point, so that callers need not try again what
 // cannot end differently: an attempt depends on its targets and on what lastChange() covers, nothing else.
@@ -18,6 +24,7 @@
 #include <vector>
 
 #include "MeshQuality.h"
+#include "MoveGroups.h"
 
 namespace pm {
 
@@ -35,6 +42,7 @@ enum class Refusal : std::uint8_t {
   FaceWeight,
   VolumeRatio,
   FaceTet,
+  NotMovable,  ///< the point is not among those the mover was given
   Other
 };
 /// In words, e.g. "warpage of a face".
@@ -44,7 +52,12 @@ class NodeMover {
  public:
   /// Points move in place. The topology must not change while the mover lives.
   /// A monitor makes forEach() stop soon after an abort.
-  NodeMover(PolyMesh& mesh, const QualityLimits& limits, const Monitor* monitor = nullptr);
+  NodeMover(PolyMesh& mesh, const QualityLimits& limits, const Monitor* monitor = nullptr)
+      : NodeMover(mesh, limits, MoverRegion(mesh, nullptr), monitor) {}
+  /// The same for these points only, in any order; others cannot move, and have neither cells nor measures.
+  NodeMover(PolyMesh& mesh, const QualityLimits& limits, const std::vector<Id>& movable,
+            const Monitor* monitor = nullptr)
+      : NodeMover(mesh, limits, MoverRegion(mesh, &movable), monitor) {}
 
   /// Moves p to target (its fixed coordinates stay); true when kept.
   bool move(Id p, const Vec3& target) { return tryMove(p, target) == Refusal::None; }
@@ -82,21 +95,19 @@ class NodeMover {
   /// group they may run in parallel, with the same result for any number of threads. Greedy, in the order
   /// given.
   std::vector<std::vector<Id>> colour(const std::vector<Id>& points) const;
-  /// Calls body(point) for every point, group by group, the points of a group in parallel. Throws AbortError
-  /// between groups when the monitor says so.
+  /// The same for sweeps over many points: neighbours move one after the other, in blocks, which is kinder to
+  /// the caches.
+  MoveBlocks blocks(const std::vector<Id>& points) const { return groupBlocks(mesh_, region_, points); }
+  /// Calls body(point) for every point, group by group, the points (or blocks) of a group in parallel. Throws
+  /// AbortError between groups when the monitor says so.
   template <class Body>
-  void forEach(const std::vector<std::vector<Id>>& groups, const Body& body) {
-    for (const auto& group : groups) {
-      if (monitor_ && monitor_->aborted()) throw AbortError("Stopped on request.");
-      ++tick_;
-      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, group.size(), 16), [&](const auto& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) body(group[i]);
-      });
-    }
-  }
+  void forEach(const std::vector<std::vector<Id>>& groups, const Body& body);
+  template <class Body>
+  void forEach(const MoveBlocks& blocks, const Body& body);
 
-  /// Counts the groups of forEach(): the time of a move or of an attempt.
-  Id tick() const { return tick_; }
+  /// The time of a move or of an attempt: later for what comes later in forEach(), unless the two touch
+  /// nothing in common.
+  Id tick() const { return now_ > 0 ? now_ : tick_; }
   /// When something last moved that the measures around p and, for a wall point, around its base depend on.
   /// What failed at a later tick fails again.
   Id lastChange(Id p) const;
@@ -104,32 +115,39 @@ class NodeMover {
   /// end as that one. Notes an attempt otherwise; 0 is none yet.
   bool worthTrying(Id p, Id& tried) const {
     if (lastChange(p) < tried) return false;
-    tried = tick_;
+    tried = tick();
     return true;
   }
 
   const PolyMesh& mesh() const { return mesh_; }
   const Vec3& point(Id p) const { return mesh_.points[p]; }
-  Span<Id> cellsOf(Id p) const { return pointCells_[p]; }
-  Span<Id> facesOf(Id p) const { return pointFaces_[p]; }
-  Span<Id> pointsOf(Id cell) const { return cellPoints_[cell]; }
-  const Vec3& faceCentre(Id f) const { return faces_[f].shape.centre; }
-  const Vec3& faceNormal(Id f) const { return faces_[f].shape.normal; }  ///< length = area, leaves the owner
+  /// Of a movable point, else none.
+  Span<Id> cellsOf(Id p) const { return isMovable(p) ? region_.pointCells[slot(p)] : Span<Id>(); }
+  Span<Id> facesOf(Id p) const { return isMovable(p) ? region_.pointFaces[slot(p)] : Span<Id>(); }
+  /// Of a cell of a movable point; the same for the faces and cells below.
+  Span<Id> pointsOf(Id cell) const { return region_.cellPoints[region_.cellSlot[cell]]; }
+  bool isMovable(Id p) const { return slot(p) != kNone; }
+  const Vec3& faceCentre(Id f) const { return face(f).centre; }
+  const Vec3& faceNormal(Id f) const { return face(f).normal; }  ///< length = area, leaves the owner
   /// Sum of the faces' area vectors; of the wall faces around a node, its outward direction there.
   Vec3 areaVector(Span<Id> faces) const {
     Vec3 sum = Vec3::Zero();
-    for (Id f : faces) sum += faces_[f].shape.normal;
+    for (Id f : faces) sum += face(f).normal;
     return sum;
   }
-  const Vec3& cellCentre(Id c) const { return cells_[c].centre; }
+  const Vec3& cellCentre(Id c) const { return cell(c).centre; }
 
  private:
-  struct FaceState {
-    FaceMeasures shape;
-    double cosAngle = 1;  ///< the worse of the thesis' and of OpenFOAM's cell centres
-    double skew = 0;
-    float weight = 0.5, volumeRatio = 1, tet = 0;  ///< tet: smallest of OpenFOAM's decomposition
+  struct Shape {
+    Vec3 centre, normal;
+    float eta, cosWarpage;
   };
+  /// What lies between a face and its cells.
+  struct Relation {
+    float cosAngle = 1;  ///< the worse of the thesis' and of OpenFOAM's cell centres
+    float skew = 0, weight = 0.5, volumeRatio = 1, tet = 0;  ///< tet: smallest of OpenFOAM's decomposition
+  };
+  struct FaceState : Shape, Relation {};
   struct CellState : CellMeasures {
     double determinant = 1;
   };
@@ -137,38 +155,86 @@ class NodeMover {
   static constexpr double kAny = std::numeric_limits<double>::infinity();
 
   /// worst: kept only if better, from this badness on; kAny: if valid.
+  NodeMover(PolyMesh& mesh, const QualityLimits& limits, MoverRegion region, const Monitor* monitor);
+  void measureRim();
+
   Refusal attempt(const Id* points, const Vec3* targets, std::size_t count, double worst,
                   const std::function<bool()>& accept = {});
   void gather(const Id* points, std::size_t count, Touched& t) const;
+  void gatherFaces(Touched& t) const;
   Refusal tryShapes(Touched& t, double worst);
   Refusal tryCells(Touched& t, double worst);
   Refusal tryAngles(Touched& t, double worst);
   void undo(const Id* points, const Touched& t);
-  void relate(Id f);
   bool isBetter(const Touched& t) const;
-  Refusal shapeRefuses(Id f, const FaceMeasures& old) const;
-  Refusal angleRefuses(Id f, const FaceState& old) const;
+  Refusal shapeRefuses(Id f, const Shape& old) const;
+  Refusal angleRefuses(Id f, const Relation& old) const;
   Refusal cellRefuses(const CellState& now, const CellState& old) const;
   bool isInternal(Id f) const { return f < mesh_.internalFaces(); }
-  double badnessOfShape(const FaceMeasures& shape, bool internal) const;
-  double badnessOfAngle(const FaceState& s, bool internal) const;
-  double badnessOfFace(const FaceState& s, bool internal) const {
-    return std::max(badnessOfShape(s.shape, internal), badnessOfAngle(s, internal));
+  double minEta(Id f) const { return isInternal(f) ? limits_.minEtaInternal : limits_.minEtaBoundary; }
+  double minCos(Id f) const { return isInternal(f) ? cosInternal_ : cosBoundary_; }
+  double maxSkew(Id f) const { return isInternal(f) ? limits_.maxSkewInternal : limits_.maxSkewBoundary; }
+  double badnessOfShape(Id f, const Shape& shape) const;
+  double badnessOfRelation(Id f, const Relation& s) const;
+  double badnessOfFace(Id f, const FaceState& s) const {
+    return std::max(badnessOfShape(f, s), badnessOfRelation(f, s));
   }
   double badnessOfCell(const CellMeasures& c) const;
+  Shape shapeNow(Id f) const;
+  Relation relationNow(Id f) const;
   CellState cellNow(Id c) const;
-  void measureShape(Id c, CellState& cell) const;
-  double determinant(Id c) const;
+
+  Id slot(Id p) const { return region_.pointSlot[p]; }
+  FaceState& face(Id f) { return faces_[region_.faceSlot[f]]; }
+  const FaceState& face(Id f) const { return faces_[region_.faceSlot[f]]; }
+  CellState& cell(Id c) { return cells_[region_.cellSlot[c]]; }
+  const CellState& cell(Id c) const { return cells_[region_.cellSlot[c]]; }
+  Span<Id> facesOfCell(Id c) const { return region_.cellFaces[region_.cellSlot[c]]; }
 
   PolyMesh& mesh_;
   const Monitor* monitor_;
   QualityLimits limits_;
-  double cosInternal_, cosBoundary_, cosWarpage_, minVolume_, minTet_, minWeight_, minRatio_;
+  double cosInternal_, cosBoundary_, cosWarpage_, minVolume_, minTet_;
+  MoverRegion region_;
   std::vector<FaceState> faces_;
   std::vector<CellState> cells_;
-  Csr<Id> pointCells_, pointFaces_, cellFaces_, cellPoints_;
   Id tick_ = 1;
-  std::vector<std::atomic<Id>> changed_;  // #C tick of the last kept move in the cell or across a face of it
+  std::vector<std::atomic<Id>> changed_;   // tick of the last kept move in the cell or across a face of it
+  inline static thread_local Id now_ = 0;  // tick of the block's point that this thread moves; 0: none
 };
+
+template <class Body>
+void NodeMover::forEach(const std::vector<std::vector<Id>>& groups, const Body& body) {
+  for (const auto& group : groups) {
+    if (monitor_ && monitor_->aborted()) throw AbortError("Stopped on request.");
+    ++tick_;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, group.size(), 16), [&](const auto& range) {
+      for (std::size_t i = range.begin(); i < range.end(); ++i) body(group[i]);
+    });
+  }
+}
+
+template <class Body>
+void NodeMover::forEach(const MoveBlocks& blocks, const Body& body) {
+  struct Clock {
+    ~Clock() { now_ = 0; }
+  };
+  for (const auto& group : blocks.groups) {
+    if (monitor_ && monitor_->aborted()) throw AbortError("Stopped on request.");
+    std::size_t longest = 0;
+    for (Id block : group) longest = std::max(longest, blocks.points[block].size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, group.size()), [&](const auto& range) {
+      const Clock clock;
+      for (std::size_t i = range.begin(); i < range.end(); ++i) {
+        now_ = tick_;
+        for (Id p : blocks.points[group[i]]) {
+          ++now_;
+          body(p);
+        }
+      }
+    });
+    tick_ += static_cast<Id>(longest);
+  }
+}
 
 }  // namespace pm

@@ -38,9 +38,9 @@ class Projector {
       : mesh_(mesh),
         field_(field),
         options_(options),
-        mover_(mesh, options.limits, &monitor),
+        mover_(mesh, options.limits, pointsNearWall(mesh, kInnerRings), &monitor),
         wall_(wallSurface(mesh)) {
-    wallGroups_ = mover_.colour(wall_.nodes);
+    wallBlocks_ = mover_.blocks(wall_.nodes);
     distance_.assign(wall_.size(), 0.0);
     tried_.assign(wall_.size(), 0);
     baseOffset_.assign(wall_.size(), Vec3::Zero());
@@ -119,7 +119,7 @@ class Projector {
   // surface, and folds if it is still upright when it gets there.
   void flattenFront() {
     placeBases();
-    mover_.forEach(wallGroups_, [&](Id p) {
+    mover_.forEach(wallBlocks_, [&](Id p) {
       const Id row = wall_.rowOf[p];
       const Vec3 x = mesh_.points[p];
       Vec3 mean, normal;
@@ -162,7 +162,7 @@ class Projector {
     if (part != lastPart_) std::fill(tried_.begin(), tried_.end(), 0);
     lastPart_ = part;
     placeBases();
-    mover_.forEach(wallGroups_, [&](Id p) {
+    mover_.forEach(wallBlocks_, [&](Id p) {
       const Id row = wall_.rowOf[p];
       if (mover_.worthTrying(p, tried_[row])) approachNode(p, row, part);
     });
@@ -198,7 +198,7 @@ class Projector {
 
   // 4.5.1: Laplacian, kept only where the worst local measure gets better.
   void smoothInner() {
-    mover_.forEach(innerGroups_, [&](Id p) {
+    mover_.forEach(innerBlocks_, [&](Id p) {
       if (!mover_.worthTrying(p, innerTried_[p])) return;
       Vec3 mean = Vec3::Zero();
       for (Id c : mover_.cellsOf(p)) mean += mover_.cellCentre(c);
@@ -225,7 +225,7 @@ class Projector {
     around.erase(std::unique(around.begin(), around.end()), around.end());
     const auto atEase = [&](Id p) { return mover_.badness(p) < kAtLimit; };
     around.erase(std::remove_if(around.begin(), around.end(), atEase), around.end());
-    mover_.forEach(mover_.colour(around), [&](Id p) {
+    mover_.forEach(mover_.blocks(around), [&](Id p) {
       if (!mover_.worthTrying(p, freeTried_[p])) return;
       double worst = mover_.badness(p);
       for (double step : {0.2, 0.07}) {
@@ -240,27 +240,14 @@ class Projector {
 
   // Rings of nodes below the bases, by cells.
   void collectInner() {
-    std::vector<std::uint8_t> seen(mesh_.points.size(), 0);
-    for (Id p : wall_.nodes) seen[p] = 1;
-    std::vector<Id> ring, inner;
-    for (Id p : wall_.nodes) {
-      ring.push_back(mesh_.base[p]);
-      seen[mesh_.base[p]] = 1;
-    }
+    std::vector<std::uint8_t> marked(mesh_.points.size(), 0);
+    for (Id p : wall_.nodes) marked[p] = marked[mesh_.base[p]] = 1;
+    std::vector<Id> inner;
     for (int k = 0; k < kInnerRings; ++k) {
-      std::vector<Id> next;
-      for (Id p : ring)
-        for (Id c : mover_.cellsOf(p))
-          for (Id q : mover_.pointsOf(c))
-            if (!seen[q]) {
-              seen[q] = 1;
-              next.push_back(q);
-            }
-      std::sort(next.begin(), next.end());
-      inner.insert(inner.end(), next.begin(), next.end());
-      ring.swap(next);
+      const std::vector<Id> ring = nextRing(mesh_, marked);
+      inner.insert(inner.end(), ring.begin(), ring.end());
     }
-    innerGroups_ = mover_.colour(inner);
+    innerBlocks_ = mover_.blocks(inner);
   }
 
   PolyMesh& mesh_;
@@ -268,7 +255,7 @@ class Projector {
   const ProjectOptions& options_;
   NodeMover mover_;
   WallSurface wall_;
-  std::vector<std::vector<Id>> wallGroups_, innerGroups_;
+  MoveBlocks wallBlocks_, innerBlocks_;
   std::vector<double> distance_;            // of each wall node to the geometry, as its last drift left it
   double lastPart_ = 0;                     // of the way, in the last drift
   std::vector<Vec3> baseOffset_;            // #W ideal place of each base from its wall node

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MoverRegion.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <numeric>
+
+namespace pm {
+namespace {
+
+using Marks = std::vector<std::uint8_t>;
+
+/// Marks both cells of every face that holds a marked point: all cells of those points.
+Marks cellsOfMarked(const PolyMesh& mesh, const Marks& points) {
+  Marks cells(mesh.cellCount, 0);
+  for (Id f = 0; f < mesh.faceCount(); ++f) {
+    const Span<Id> row = mesh.faces[f];
+    if (std::none_of(row.begin(), row.end(), [&](Id p) { return points[p] != 0; })) continue;
+    cells[mesh.owner[f]] = 1;
+    if (f < mesh.internalFaces()) cells[mesh.neighbour[f]] = 1;
+  }
+  return cells;
+}
+
+/// Numbers marked items from `first` on; returns the next number.
+Id number(const Marks& marks, std::vector<Id>& slots, Id first = 0) {
+  for (std::size_t i = 0; i < marks.size(); ++i)
+    if (marks[i]) slots[i] = first++;
+  return first;
+}
+
+/// Rows of `count` slots from pairs (slot, value) that forEachPair(body) passes to body in the order wanted.
+template <class ForEachPair>
+Csr<Id> collectRows(Id count, const ForEachPair& forEachPair) {
+  Csr<Id> rows;
+  rows.offsets.assign(static_cast<std::size_t>(count) + 1, 0);
+  forEachPair([&](Id slot, Id) { ++rows.offsets[slot + 1]; });
+  std::partial_sum(rows.offsets.begin(), rows.offsets.end(), rows.offsets.begin());
+  rows.values.resize(rows.offsets.back());
+  std::vector<Id> next(rows.offsets.begin(), rows.offsets.end() - 1);
+  forEachPair([&](Id slot, Id value) { rows.values[next[slot]++] = value; });
+  return rows;
+}
+
+}  // namespace
+
+Csr<Id> facesOfSlots(const PolyMesh& mesh, const std::vector<Id>& cellSlot, Id first, Id last) {
+  return collectRows(last - first, [&](const auto& body) {
+    const auto add = [&](Id cell, Id f) {
+      const Id slot = cellSlot[cell];
+      if (slot >= first && slot < last) body(slot - first, f);
+    };
+    for (Id f = 0; f < mesh.faceCount(); ++f) {
+      add(mesh.owner[f], f);
+      if (f < mesh.internalFaces()) add(mesh.neighbour[f], f);
+    }
+  });
+}
+
+Csr<Id> pointsOfRows(const PolyMesh& mesh, const Csr<Id>& faceRows) {
+  Csr<Id> rows;
+  rows.offsets.assign(faceRows.offsets.size(), 0);
+  const auto forEachRow = [&](const auto& body) {
+    tbb::parallel_for(tbb::blocked_range<Id>(0, faceRows.rows(), 1024), [&](const auto& range) {
+      std::vector<Id> own;
+      for (Id i = range.begin(); i < range.end(); ++i) {
+        own.clear();
+        for (Id f : faceRows[i]) own.insert(own.end(), mesh.faces[f].begin(), mesh.faces[f].end());
+        std::sort(own.begin(), own.end());
+        own.erase(std::unique(own.begin(), own.end()), own.end());
+        body(i, own);
+      }
+    });
+  };
+  forEachRow([&](Id i, const auto& own) { rows.offsets[i + 1] = static_cast<Id>(own.size()); });
+  std::partial_sum(rows.offsets.begin(), rows.offsets.end(), rows.offsets.begin());
+  rows.values.resize(rows.offsets.back());
+  forEachRow([&](Id i, const auto& own) {
+    std::copy(own.begin(), own.end(), rows.values.begin() + rows.offsets[i]);
+  });
+  return rows;
+}
+
+MoverRegion::MoverRegion(const PolyMesh& mesh, const std::vector<Id>* movable)
+    : pointSlot(mesh.points.size(), kNone),
+      faceSlot(mesh.faceCount(), kNone),
+      cellSlot(mesh.cellCount, kNone) {
+  Marks marks(mesh.points.size(), movable == nullptr);
+  if (movable != nullptr)
+    for (Id p : *movable) marks[p] = 1;
+  points = number(marks, pointSlot);
+  const Marks inner = cellsOfMarked(mesh, marks);
+  Marks rim(mesh.cellCount, 0);
+  for (Id f = 0; f < mesh.faceCount(); ++f) {
+    const Id own = mesh.owner[f], next = f < mesh.internalFaces() ? mesh.neighbour[f] : own;
+    if (!inner[own] && !inner[next]) continue;
+    faceSlot[f] = faces++;
+    for (Id c : {own, next}) rim[c] = !inner[c];
+  }
+  cells = number(inner, cellSlot);
+  cellsAndRim = number(rim, cellSlot, cells);
+
+  cellFaces = facesOfSlots(mesh, cellSlot, 0, cells);
+  cellPoints = pointsOfRows(mesh, cellFaces);
+  pointFaces = collectRows(points, [&](const auto& body) {
+    for (Id f = 0; f < mesh.faceCount(); ++f)
+      for (Id p : mesh.faces[f])
+        if (pointSlot[p] != kNone) body(pointSlot[p], f);
+  });
+  pointCells = collectRows(points, [&](const auto& body) {
+    for (Id c = 0; c < mesh.cellCount; ++c) {
+      if (!inner[c]) continue;
+      for (Id p : cellPoints[cellSlot[c]])
+        if (pointSlot[p] != kNone) body(pointSlot[p], c);
+    }
+  });
+}
+
+std::vector<Id> nextRing(const PolyMesh& mesh, std::vector<std::uint8_t>& marked) {
+  const Marks cells = cellsOfMarked(mesh, marked);
+  Marks now = marked;
+  for (Id f = 0; f < mesh.faceCount(); ++f)
+    if (cells[mesh.owner[f]] || (f < mesh.internalFaces() && cells[mesh.neighbour[f]]))
+      for (Id p : mesh.faces[f]) now[p] = 1;
+  std::vector<Id> ring;
+  for (std::size_t p = 0; p < now.size(); ++p)
+    if (now[p] && !marked[p]) ring.push_back(static_cast<Id>(p));
+  marked.swap(now);
+  return ring;
+}
+
+std::vector<Id> pointsNearWall(const PolyMesh& mesh, int rings) {
+  Marks marked(mesh.points.size(), 0);
+  std::vector<Id> points;
+  for (std::size_t p = 0; p < mesh.points.size(); ++p)
+    if (mesh.base[p] != kNone) marked[p] = marked[mesh.base[p]] = 1;
+  for (std::size_t p = 0; p < mesh.points.size(); ++p)
+    if (marked[p]) points.push_back(static_cast<Id>(p));
+  for (int k = 0; k < rings; ++k) {
+    const std::vector<Id> ring = nextRing(mesh, marked);
+    points.insert(points.end(), ring.begin(), ring.end());
+  }
+  return points;
+}
+
+}  // namespace pm
