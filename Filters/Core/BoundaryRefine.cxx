@@ -54,6 +54,13 @@ Vec3 alongEdge(const PolyMesh& mesh, const LayerColumns& columns, Id lower) {
   return mesh.points[lower] - mesh.points[columns.wallPoint(lower)];
 }
 
+/// Area vector of a column's wall, out of the mesh.
+Vec3 roofArea(const PolyMesh& mesh, const LayerColumns& columns, Id column) {
+  Vec3 sum = Vec3::Zero();
+  for (Id f : columns.roof(column)) sum += measureFace(mesh.points, mesh.faces[f], true).normal;
+  return sum;
+}
+
 /// Length along each edge for one unit of height above the wall: edges lean where the wall bends.
 std::vector<double> edgeSlants(const PolyMesh& mesh, const LayerColumns& columns) {
   constexpr double kLeast =
@@ -61,8 +68,8 @@ std::vector<double> edgeSlants(const PolyMesh& mesh, const LayerColumns& columns
   std::vector<double> cosines(mesh.points.size(), 0.0);
   std::vector<Id> counts(mesh.points.size(), 0);
   for (Id c = 0; c < columns.count(); ++c) {
-    if (columns.wallFace(c) == kNone) continue;
-    const Vec3 inward = -measureFace(mesh.points, mesh.faces[columns.wallFace(c)], true).normal.normalized();
+    if (!columns.canSplit(c)) continue;
+    const Vec3 inward = -roofArea(mesh, columns, c).normalized();
     for (Id b : columns.ring(c)) {
       cosines[b] += inward.dot(alongEdge(mesh, columns, b).normalized());
       ++counts[b];
@@ -122,7 +129,7 @@ void warnOfAspect(const PolyMesh& mesh, const LayerColumns& columns, const std::
   double widest = 0;
   for (Id c = 0; c < columns.count(); ++c) {
     if (columns.layers(c) == 1) continue;
-    const double area = measureFace(mesh.points, mesh.faces[columns.wallFace(c)], true).normal.norm();
+    const double area = roofArea(mesh, columns, c).norm();
     for (Id b : columns.ring(c)) widest = std::max(widest, std::sqrt(area) / first[b]);
   }
   if (widest <= kMostAspect) return;
@@ -140,7 +147,7 @@ std::vector<Vec3> planLayers(const PolyMesh& mesh, LayerColumns& columns,
   std::vector<Id> all(columns.count());
   std::iota(all.begin(), all.end(), 0);
   for (Id c : all) {
-    if (columns.wallFace(c) == kNone) continue;
+    if (!columns.canSplit(c)) continue;
     Id layers = options.layers;
     for (Id b : columns.ring(c)) {
       layers = std::min(layers, fittingLayers(alongEdge(mesh, columns, b).norm(), first[b], options, sums));
@@ -163,6 +170,21 @@ std::vector<Vec3> planLayers(const PolyMesh& mesh, LayerColumns& columns,
     }
   }
   return points;
+}
+
+/// Faces between layers are whole where they are flat enough: their parts would be skew between thin layers.
+void partFoldedCaps(LayerColumns& columns, const std::vector<Vec3>& points, const QualityLimits& limits) {
+  std::vector<Id> row;
+  for (Id c = 0; c < columns.count(); ++c) {
+    if (columns.roof(c).size() < 2) continue;
+    for (Id level = 1; level < columns.layers(c); ++level) {
+      columns.capRow(c, level, 0, row);
+      const FaceMeasures cap = measureFace(points, {row.data(), row.data() + row.size()});
+      if (cap.warpage() <= limits.maxWarpage && cap.eta >= limits.minEtaInternal) continue;
+      columns.partCaps(c);
+      break;
+    }
+  }
 }
 
 /// Columns that share an edge with one of the changed.
@@ -273,7 +295,8 @@ class Splitter {
   Id facesFrom(Id source) const {
     const Id internal = mesh_.internalFaces();
     if (source < internal) return columns_.pieces(source);
-    if (source < internal + columns_.count()) return columns_.layers(source - internal) - 1;
+    if (source < internal + columns_.count())
+      return (columns_.layers(source - internal) - 1) * columns_.capParts(source - internal);
     return columns_.pieces(source - columns_.count());
   }
   /// The k-th face (from 1) of a source.
@@ -281,9 +304,10 @@ class Splitter {
     const Id internal = mesh_.internalFaces();
     if (source >= internal && source < internal + columns_.count()) {
       const Id column = source - internal;
-      columns_.capRow(column, k, row);
-      owner = cellAt(columns_.cell(column), k + 1);
-      neighbour = cellAt(columns_.cell(column), k);
+      const Id parts = columns_.capParts(column), level = (k - 1) / parts + 1;
+      columns_.capRow(column, level, (k - 1) % parts, row);
+      owner = cellAt(columns_.cell(column), level + 1);
+      neighbour = cellAt(columns_.cell(column), level);
       return;
     }
     const Id face = source < internal ? source : source - columns_.count();
@@ -358,6 +382,7 @@ PolyMesh boundaryRefine(const PolyMesh& mesh, const BoundaryRefineOptions& optio
   monitor.check(0, "finding prisms");
   LayerColumns columns(mesh);
   const std::vector<Vec3> points = planLayers(mesh, columns, options, monitor);
+  partFoldedCaps(columns, points, options.limits);
   lowerUntilValid(mesh, columns, points, options.limits, monitor);
   if (report) *report = countLayers(mesh, columns, options.layers);
   monitor.check(0.7, "splitting prisms");

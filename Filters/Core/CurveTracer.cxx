@@ -5,6 +5,8 @@
 #include <cmath>
 #include <functional>
 
+#include "MeshQuality.h"
+
 namespace pm {
 namespace {
 
@@ -13,6 +15,8 @@ namespace {
 constexpr double kLength = 0.05;
 constexpr double kGap = 5.0;
 constexpr double kEnterGap = 2.0;
+constexpr double kAcross = 1.2;        // across a face: its cut makes two where one would do
+constexpr double kMostDent = 0.1;      // scales that the ridge of a cut face may lie inside of it
 constexpr double kBack = 2.0;          // for each length an edge runs against the curve
 constexpr double kOnCurve = 2e-3;      // scales from the curve that count as on it
 constexpr double kLargestBack = 0.35;  // scales an edge may run against the curve at most
@@ -27,7 +31,7 @@ void CurveTracer::build(Task& task) {
   const double inf = std::numeric_limits<double>::infinity();
   vertices_.clear();
   const auto add = [&](double arc, double distance, Id row) {
-    vertices_.push_back({arc, distance, inf, row, kNone, false});
+    vertices_.push_back({arc, distance, inf, row, kNone, kNone, false});
   };
   start_ = end_ = kNone;
   if (task.startRow != kNone) {
@@ -59,13 +63,32 @@ double CurveTracer::edgeCost(const Task& task, const Vertex& a, const Vertex& b)
   return edge * (kLength + d2) + kBack * std::max(0.0, -advance);
 }
 
-void CurveTracer::relax(Id from, Id to, double cost) {
+void CurveTracer::relax(Id from, Id to, double cost, Id cut) {
   Vertex& v = vertices_[to];
   if (v.done || !(cost < v.cost)) return;
   v.cost = cost;
   v.from = from;
+  v.cut = cut;
   queue_.emplace_back(cost, to);
   std::push_heap(queue_.begin(), queue_.end(), std::greater<>());
+}
+
+/// Would all points of a face lie on the path if it went on from v to the point along an edge? The face would
+/// end up on the curve as a whole.
+bool CurveTracer::enclosesFace(Id v, Id point) const {
+  const auto pointAt = [&](Id vertex) {
+    return vertex == kNone || vertex >= nodeCount_ ? kNone : wall_.nodes[vertices_[vertex].row];
+  };
+  const Id from = vertices_[v].from, p = pointAt(v), q = pointAt(from);
+  if (q == kNone) return false;
+  const Id r = pointAt(vertices_[from].from);
+  for (Id f : wall_.faces[vertices_[v].row]) {
+    const Span<Id> row = mesh_.faces[f];
+    const auto has = [&](Id x) { return x != kNone && std::find(row.begin(), row.end(), x) != row.end(); };
+    if (!has(point) || !has(q)) continue;
+    if (row.size() == 3 || vertices_[v].cut == f || (row.size() == 4 && has(r) && r != p)) return true;
+  }
+  return false;
 }
 
 void CurveTracer::relaxNode(const Task& task, Id v) {
@@ -74,9 +97,46 @@ void CurveTracer::relaxNode(const Task& task, Id v) {
     const Id w = localOf_[row];
     if (w == kNone || w == v || vertices_[w].done) continue;
     const double cost = edgeCost(task, a, vertices_[w]);
-    if (cost >= 0) relax(v, w, a.cost + cost);
+    if (cost >= 0 && a.cost + cost < vertices_[w].cost && !enclosesFace(v, wall_.nodes[row]))
+      relax(v, w, a.cost + cost);
   }
+  if (canCut_) relaxAcross(task, v);
   relax(v, nodeCount_ + v, a.cost);
+}
+
+/// Would the face, cut from a to b and drawn to the curve, form a ridge into its cell? Such cells soon have
+/// bad tetrahedra; a path along wall edges is better there.
+bool CurveTracer::dents(Id face, const Vertex& a, const Vertex& b, const Task& task) const {
+  const Id p = wall_.nodes[a.row], q = wall_.nodes[b.row];
+  const Vec3 ridge = table_.at(task.curve, 0.5 * (a.arc + b.arc) + task.arcShift);
+  Vec3 rest = Vec3::Zero();
+  for (Id other : mesh_.faces[face])
+    if (other != p && other != q) rest += mesh_.points[other];
+  rest /= static_cast<double>(mesh_.faces[face].size() - 2);
+  const Vec3 outward = measureFace(mesh_.points, mesh_.faces[face], true).normal.normalized();
+  return (ridge - rest).dot(outward) < -kMostDent * task.scale;
+}
+
+/// Ways across the faces around a node; not where the path has come along the face already.
+void CurveTracer::relaxAcross(const Task& task, Id v) {
+  const Vertex a = vertices_[v];
+  const Id p = wall_.nodes[a.row];
+  for (Id f : wall_.faces[a.row]) {
+    const Span<Id> row = mesh_.faces[f];
+    const std::size_t n = row.size(), at = std::find(row.begin(), row.end(), p) - row.begin();
+    if (n == 3) continue;
+    if (a.from != kNone && a.from < nodeCount_ &&
+        std::find(row.begin(), row.end(), wall_.nodes[vertices_[a.from].row]) != row.end())
+      continue;
+    for (std::size_t k = 2; k + 1 < n; ++k) {
+      const Id q = row[(at + k) % n], w = localOf_[wall_.rowOf[q]];
+      if (w == kNone || w == v || vertices_[w].done) continue;
+      const double cost = kAcross * edgeCost(task, a, vertices_[w]);
+      if (cost >= 0 && a.cost + cost < vertices_[w].cost && !dents(f, a, vertices_[w], task) &&
+          canCut_({f, p, q}))
+        relax(v, w, a.cost + cost, f);
+    }
+  }
 }
 
 void CurveTracer::relaxChain(const Task& task, Id v) {
@@ -117,7 +177,8 @@ std::vector<std::vector<PathNode>> CurveTracer::unwind(const Task&) const {
     }
     if (!open) pieces.emplace_back();
     open = true;
-    pieces.back().push_back({vertices_[v].row, vertices_[v].arc, vertices_[v].distance < kOnCurve});
+    const Vertex& at = vertices_[v];
+    pieces.back().push_back({at.row, at.arc, at.distance < kOnCurve, at.cut});
   }
   for (auto& piece : pieces) std::reverse(piece.begin(), piece.end());
   std::reverse(pieces.begin(), pieces.end());

@@ -18,14 +18,18 @@ struct PathNode {
   Id row = kNone;
   double arc = 0;
   bool onCurve = false;  ///< lies on the curve already
+  Id cut = kNone;        ///< wall face that the way from the previous node crosses
 };
+
+/// May a path cross the face from one of its points to another?
+using CanCut = std::function<bool(const WallCut&)>;
 
 /// Dijkstra over the nodes near a curve and, beside them, a chain of the same arc positions: moving along the
 /// chain is a gap. A gap costs more than any path within reach, so it is taken only where there is no path.
 class CurveTracer {
  public:
-  CurveTracer(const PolyMesh& mesh, const WallSurface& wall, const CurveTable& table)
-      : mesh_(mesh), wall_(wall), table_(table), localOf_(wall.nodes.size(), kNone) {}
+  CurveTracer(const PolyMesh& mesh, const WallSurface& wall, const CurveTable& table, const CanCut& canCut)
+      : mesh_(mesh), wall_(wall), table_(table), canCut_(canCut), localOf_(wall.nodes.size(), kNone) {}
 
   struct Task {
     Id curve = kNone;
@@ -41,20 +45,24 @@ class CurveTracer {
  private:
   struct Vertex {
     double arc, distance, cost;
-    Id row, from;
+    Id row, from, cut;
     bool done;
   };
   void build(Task& task);
   void search(const Task& task);
   void relaxNode(const Task& task, Id v);
+  void relaxAcross(const Task& task, Id v);
+  bool enclosesFace(Id v, Id point) const;
+  bool dents(Id face, const Vertex& a, const Vertex& b, const Task& task) const;
   void relaxChain(const Task& task, Id v);
-  void relax(Id from, Id to, double cost);
+  void relax(Id from, Id to, double cost, Id cut = kNone);
   double edgeCost(const Task& task, const Vertex& a, const Vertex& b) const;
   std::vector<std::vector<PathNode>> unwind(const Task& task) const;
 
   const PolyMesh& mesh_;
   const WallSurface& wall_;
   const CurveTable& table_;
+  const CanCut& canCut_;
   std::vector<Id> localOf_;                   // #W vertex of a row in the running task
   std::vector<Vertex> vertices_;              // nodes, their chain positions, then the two ends of the chain
   std::vector<std::pair<double, Id>> queue_;  // binary heap, smallest first

@@ -65,8 +65,8 @@ struct Neighbourhood {
 class PathFinder {
  public:
   PathFinder(const PolyMesh& mesh, const WallSurface& wall, const FeatureGraph& graph,
-             const FeaturePathOptions& options, const std::vector<float>& penalty)
-      : mesh_(mesh), wall_(wall), graph_(graph), options_(options), penalty_(penalty), table_(graph) {}
+             const FeaturePathOptions& options, const PathHistory& history)
+      : mesh_(mesh), wall_(wall), graph_(graph), options_(options), history_(history), table_(graph) {}
   FeaturePaths find();
 
  private:
@@ -78,6 +78,14 @@ class PathFinder {
   void gatherNode(Id row, Block& block) const;
   void addCorner(Id corner, Id row, Block& block) const;
   bool reachable(Id row, const Vec3& target) const;
+  double penalty(Id row) const { return history_.penalty.empty() ? 0.0 : history_.penalty[row]; }
+  /// Free for a curve or a corner?
+  bool isFree(Id row, Id curve, Id corner) const {
+    if (taken_[row].node != kNone) return false;
+    if (history_.curve.empty() || (history_.curve[row] == kNone && history_.corner[row] == kNone))
+      return true;
+    return history_.curve[row] == curve && history_.corner[row] == corner;
+  }
   void mergeCorners();
   Id findRepresentative(Id corner) const;
   void placeCorners();
@@ -89,18 +97,20 @@ class PathFinder {
   std::vector<double> spread(const std::vector<PathNode>& piece, double scale, bool firstFixed,
                              bool lastFixed) const;
   void collectTargets();
+  bool canCut(const WallCut& cut) const;
 
   const PolyMesh& mesh_;
   const WallSurface& wall_;
   const FeatureGraph& graph_;
   const FeaturePathOptions& options_;
-  const std::vector<float>& penalty_;
+  const PathHistory& history_;
   CurveTable table_;
   Neighbourhood near_;
   std::vector<double> cornerScale_;  // #corners length scale, 0 where no wall node is near
   std::vector<Id> representative_;   // #corners
   std::vector<Id> cornerRow_;        // #corners wall row, of representatives
   std::vector<NodeTarget> taken_;    // #W
+  std::vector<char> cut_;            // #boundary faces that a path crosses
   FeaturePaths result_;
 };
 
@@ -118,7 +128,7 @@ void PathFinder::addCorner(Id corner, Id row, Block& block) const {
   const Vec3& at = graph_.corners()[corner];
   const double d = (mesh_.points[wall_.nodes[row]] - at).norm() / wall_.scale[row];
   if (d <= options_.cornerReach && reachable(row, at))
-    block.corners.push_back({d + (penalty_.empty() ? 0.0 : penalty_[row]), corner, row});
+    block.corners.push_back({d + penalty(row), corner, row});
 }
 
 void PathFinder::gatherNode(Id row, Block& block) const {
@@ -144,8 +154,7 @@ void PathFinder::gatherNode(Id row, Block& block) const {
     }
     const double d = std::sqrt(best) / scale;
     if (d <= options_.reach && reachable(row, on)) {
-      const double extra = penalty_.empty() ? 0.0 : penalty_[row];
-      block.curves.push_back({curve, {row, static_cast<float>(d + extra), arc}});
+      block.curves.push_back({curve, {row, static_cast<float>(d + penalty(row)), arc}});
     }
     if (first) addCorner(graph_.curves()[curve].startCorner, row, block);
     if (last) addCorner(graph_.curves()[curve].endCorner, row, block);
@@ -223,7 +232,7 @@ void PathFinder::placeCorners() {
   cornerRow_.assign(graph_.corners().size(), kNone);
   for (const NearCorner& n : near_.corners) {
     if (representative_[n.corner] != n.corner || cornerRow_[n.corner] != kNone) continue;
-    if (taken_[n.row].node != kNone) continue;
+    if (!isFree(n.row, kNone, n.corner)) continue;
     cornerRow_[n.corner] = n.row;
     taken_[n.row] = {wall_.nodes[n.row], kNone, n.corner, graph_.corners()[n.corner]};
   }
@@ -264,7 +273,7 @@ CurveTracer::Task PathFinder::makeTask(Id curve, double scale) const {
   task.curve = curve;
   task.scale = scale;
   for (const NearNode& n : near_.curves[curve])
-    if (taken_[n.row].node == kNone) task.nodes.push_back(n);
+    if (isFree(n.row, curve, kNone)) task.nodes.push_back(n);
   if (shape.closed) {
     chooseLoopStart(task);
     return task;
@@ -320,6 +329,10 @@ void PathFinder::keepPiece(Id curve, const std::vector<PathNode>& piece, double 
   for (std::size_t i = 0; i < piece.size(); ++i) {
     const Id row = piece[i].row;
     nodes.push_back(wall_.nodes[row]);
+    if (piece[i].cut != kNone) {
+      cut_[piece[i].cut - mesh_.internalFaces()] = 1;
+      result_.cuts.push_back({piece[i].cut, nodes[i - 1], nodes[i]});
+    }
     if (taken_[row].node == kNone)
       taken_[row] = {wall_.nodes[row], curve, kNone, table_.at(curve, arc[i] + shift)};
   }
@@ -349,6 +362,11 @@ void PathFinder::traceCurve(CurveTracer& tracer, Id curve) {
   if (pieces > 0) state = pieces == 1 && traced > length - scale ? CurveState::Traced : CurveState::Partial;
 }
 
+/// Paths cross a face once at most: ways across it might cross each other.
+bool PathFinder::canCut(const WallCut& cut) const {
+  return !cut_[cut.face - mesh_.internalFaces()] && options_.canCut(cut);
+}
+
 void PathFinder::collectTargets() {
   for (const NodeTarget& t : taken_)
     if (t.node != kNone) result_.targets.push_back(t);
@@ -364,7 +382,10 @@ FeaturePaths PathFinder::find() {
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
                    [&](Id a, Id b) { return table_.length(a) > table_.length(b); });
-  CurveTracer tracer(mesh_, wall_, table_);
+  cut_.assign(mesh_.boundaryFaces(), 0);
+  CanCut mayCut;
+  if (options_.canCut) mayCut = [this](const WallCut& cut) { return canCut(cut); };
+  CurveTracer tracer(mesh_, wall_, table_, mayCut);
   for (Id curve : order) traceCurve(tracer, curve);
   collectTargets();
   return std::move(result_);
@@ -373,8 +394,8 @@ FeaturePaths PathFinder::find() {
 }  // namespace
 
 FeaturePaths traceFeatures(const PolyMesh& mesh, const WallSurface& wall, const FeatureGraph& graph,
-                           const FeaturePathOptions& options, const std::vector<float>& penalty) {
-  return PathFinder(mesh, wall, graph, options, penalty).find();
+                           const FeaturePathOptions& options, const PathHistory& history) {
+  return PathFinder(mesh, wall, graph, options, history).find();
 }
 
 }  // namespace pm

@@ -16,7 +16,10 @@
 // node and a near curve.
 #pragma once
 
+#include <functional>
+
 #include "FeatureEdges.h"
+#include "WallCuts.h"
 #include "WallSurface.h"
 
 namespace pm {
@@ -39,6 +42,7 @@ struct FeaturePaths {
   std::vector<NodeTarget> targets;  // ascending by node
   std::vector<CurveState> curves;   // #curves
   std::vector<Id> cornerNode;       // #corners mesh point; corners that are one share it
+  std::vector<WallCut> cuts;        // faces that paths cross, one cut each; not all paths have them
   Csr<Id> pieces;                   // paths as rows of mesh points
   std::vector<Id> pieceCurve;       // #pieces
 };
@@ -50,11 +54,18 @@ struct FeaturePathOptions {
   double shortest = 0.5;      ///< open curves below this many length scales are not traced
   double shortestLoop = 2.5;  ///< the same for closed curves
   double spacing = 0.35;      ///< nodes on a curve keep this many length scales, where the curve has room
+  std::function<bool(const WallCut&)>
+      canCut;  ///< may a path cross this face? Empty: paths keep to wall edges
 };
 
-/// penalty: empty, or for each wall row an extra cost for nodes that earlier could not reach their target.
+/// What earlier attempts taught, of each wall row; empty: nothing.
+struct PathHistory {
+  std::vector<float> penalty;     // #W extra cost, in length scales, of nodes that missed their targets
+  std::vector<Id> curve, corner;  // #W what the node lies on already, else kNone: no other may take it
+};
+
 FeaturePaths traceFeatures(const PolyMesh& mesh, const WallSurface& wall, const FeatureGraph& graph,
-                           const FeaturePathOptions& options = {}, const std::vector<float>& penalty = {});
+                           const FeaturePathOptions& options = {}, const PathHistory& history = {});
 
 /// The curves of a graph by arc length.
 class CurveTable {

@@ -9,30 +9,22 @@ namespace {
 
 constexpr int kRings = 3;           // wall nodes this many edges from a target take part in the smoothing
 constexpr int kDistanceGroups = 4;  // eq 4-31
-// The rest in length scales: what counts as reached, how far a face may leave the geometry when a node
-// reaches a feature, goes part of the way and is smoothed, and how near the nodes of a path may come.
+// In length scales: what counts as reached, and how near the nodes of a path may come.
 constexpr double kReached = 1e-3;
-constexpr double kSnapTolerance = 0.5;  // the neighbours follow: a tight limit here leaves them all behind
-constexpr double kDriftTolerance = 0.1;
-constexpr double kSmoothTolerance = 0.02;
 constexpr double kCrowded = 0.2;
 
 }  // namespace
 
 FeatureSnapper::FeatureSnapper(NodeMover& mover, const WallSurface& wall, const DistanceField& field,
-                               const FeatureGraph& graph)
-    : mover_(mover), mesh_(mover.mesh()), wall_(wall), field_(field), graph_(graph) {
-  height_.resize(wall.nodes.size());
+                               const FeatureGraph& graph, const std::vector<double>& height)
+    : mover_(mover), mesh_(mover.mesh()), wall_(wall), field_(field), graph_(graph), height_(height) {
   changed_.assign(mesh_.points.size(), 1);
   innerTried_.assign(mesh_.points.size(), 0);
   smoothTried_.assign(wall.nodes.size(), 0);
   settleTried_ = smoothTried_;
   isBase_.assign(mesh_.points.size(), 0);
-  for (Id row = 0; row < wall.size(); ++row) {
-    const Id p = wall.nodes[row], b = mesh_.base[p];
-    height_[row] = b == kNone ? 0.0 : (mesh_.points[p] - mesh_.points[b]).norm();
-    if (b != kNone) isBase_[b] = 1;
-  }
+  for (Id p : wall.nodes)
+    if (mesh_.base[p] != kNone) isBase_[mesh_.base[p]] = 1;
 }
 
 void FeatureSnapper::setTargets(const FeaturePaths& paths) {
@@ -40,14 +32,17 @@ void FeatureSnapper::setTargets(const FeaturePaths& paths) {
   role_.assign(n, Role::Outside);
   target_.assign(n, Vec3::Zero());
   curve_.assign(n, kNone);
+  corner_.assign(n, kNone);
   before_.assign(n, kNone);
   snapTried_.assign(n, 0);
+  forceTried_.assign(n, 0);
   after_.assign(n, kNone);
   for (const NodeTarget& t : paths.targets) {
     const Id row = wall_.rowOf[t.node];
     role_[row] = t.corner == kNone ? Role::Curve : Role::Corner;
     target_[row] = t.target;
     curve_[row] = t.curve;
+    corner_[row] = t.corner;
   }
   for (Id i = 0; i < paths.pieces.rows(); ++i) {
     const Span<Id> piece = paths.pieces[i];
@@ -139,6 +134,23 @@ std::vector<Id> FeatureSnapper::missed() const {
   return rows;
 }
 
+void FeatureSnapper::report(PathHistory& history) const {
+  constexpr float kMissPenalty = 0.3f;  // length scales
+  const std::size_t n = wall_.nodes.size();
+  history.penalty.resize(n, 0.0f);
+  history.curve.assign(n, kNone);
+  history.corner.assign(n, kNone);
+  for (Id row = 0; row < wall_.size(); ++row) {
+    if (role_[row] != Role::Curve && role_[row] != Role::Corner) continue;
+    if (reached(row)) {
+      history.curve[row] = curve_[row];
+      history.corner[row] = corner_[row];
+    } else {
+      history.penalty[row] += kMissPenalty;
+    }
+  }
+}
+
 void FeatureSnapper::releaseMissed() {
   for (Id row : missed()) role_[row] = Role::Free;
 }
@@ -201,8 +213,8 @@ bool FeatureSnapper::tryMove(Id row, const Vec3& to, double tolerance) {
   bool kept = false;
   if (b != kNone) {
     const Vec3 low = mesh_.points[b];
-    for (double part : {0.5, 1.0}) {
-      kept = mover_.moveTogether({p, b}, {to, low + part * (to - from)});
+    for (const Vec3& at : {Vec3(low + 0.5 * (to - from)), Vec3(low + to - from), flatBase(row, to)}) {
+      kept = mover_.moveTogether({p, b}, {to, at});
       if (!kept) continue;
       changed_[b] = pass_;
       break;

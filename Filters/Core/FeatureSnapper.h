@@ -17,7 +17,7 @@ namespace pm {
 class FeatureSnapper {
  public:
   FeatureSnapper(NodeMover& mover, const WallSurface& wall, const DistanceField& field,
-                 const FeatureGraph& graph);
+                 const FeatureGraph& graph, const std::vector<double>& height);
 
   /// Takes over targets, and works from now on around them (three rings of wall nodes).
   void setTargets(const FeaturePaths& paths);
@@ -31,11 +31,22 @@ class FeatureSnapper {
   void polish();
   /// Wall rows whose targets are not reached.
   std::vector<Id> missed() const;
+  /// Notes who lies on what, and who missed.
+  void report(PathHistory& history) const;
+  /// Cuts of wall faces that stand in the way of nodes that missed (thesis 4.7.3).
+  std::vector<WallCut> helpfulCuts() const;
+  /// Forces nodes that missed to their targets and lets the points around them give way; puts back what does
+  /// not end valid (thesis 4.4.1).
+  void force();
   /// Gives up the targets that were not reached: their nodes are smoothed along the geometry like any other.
   void releaseMissed();
 
  private:
   enum class Role : std::uint8_t { Outside, Free, Curve, Corner };
+  // In length scales: how far a face may leave the geometry when a node reaches a feature (its neighbours
+  // follow: a tight limit here leaves them all behind), goes part of the way, is smoothed.
+  static constexpr double kSnapTolerance = 0.5, kDriftTolerance = 0.1, kSmoothTolerance = 0.02;
+
   bool reached(Id row) const;
   double distance(Id row) const;
   void snapNode(Id row);
@@ -53,6 +64,13 @@ class FeatureSnapper {
   bool stirred(Id row, std::vector<Id>& tried);
   bool stirredBelow(Id point);
   void smoothInner();
+  Vec3 flatBase(Id row, const Vec3& to) const;
+  std::vector<Id> mendingPoints(Id row) const;
+  void forceNode(Id row, Span<Id> points);
+  void mendInner(Id point, const Vec3& ideal, double scale);
+  void mendWallNode(Id row);
+  double qualityAt(const std::vector<Vec3>& at, const std::vector<Id>& ids) const;
+  WallCut cutFor(Id row) const;
   template <class Body>
   void forEachRow(const std::vector<std::vector<Id>>& groups, const Body& body);
 
@@ -61,16 +79,16 @@ class FeatureSnapper {
   const WallSurface& wall_;
   const DistanceField& field_;
   const FeatureGraph& graph_;
-  std::vector<double> height_;      // #W length of the prism edge at the start
-  std::vector<char> isBase_;        // #P lower end of a prism edge
-  std::vector<Role> role_;          // #W
-  std::vector<Vec3> target_;        // #W
-  std::vector<Id> curve_;           // #W
-  std::vector<Id> before_, after_;  // #W neighbours on the path, kNone at its ends
-  Id pass_ = 1;                     // counts sweeps over rows or points
-  std::vector<Id> changed_;         // #P pass in which the point moved last
-  std::vector<Id> snapTried_, smoothTried_, settleTried_,
-      innerTried_;                       // #W, #W, #W, #P pass of the last attempt
+  const std::vector<double>& height_;  // #W length that prism edges are drawn to
+  std::vector<char> isBase_;           // #P lower end of a prism edge
+  std::vector<Role> role_;             // #W
+  std::vector<Vec3> target_;           // #W
+  std::vector<Id> curve_, corner_;     // #W
+  std::vector<Id> before_, after_;     // #W neighbours on the path, kNone at its ends
+  Id pass_ = 1;                        // counts sweeps over rows or points
+  std::vector<Id> changed_;            // #P pass in which the point moved last
+  std::vector<Id> snapTried_, forceTried_, smoothTried_, settleTried_,
+      innerTried_;                       // #W, and #P the last: pass of the last attempt
   std::vector<std::vector<Id>> active_;  // groups of wall nodes around targets
   std::vector<std::vector<Id>> inner_;   // groups of points below them
 };

@@ -102,8 +102,10 @@ bool LayerCheck::measureColumn(Id column) {
     }
     for (Id level : {layer - 1, layer}) {
       if (level == 0 || level == layers) continue;
-      columns_.capRow(column, level, faces.row);
-      faces.add(level < layer ? 1 : -1);
+      for (Id part = 0; part < columns_.capParts(column); ++part) {
+        columns_.capRow(column, level, part, faces.row);
+        faces.add(level < layer ? 1 : -1);
+      }
     }
     const CellMeasures m = faces.measure(points_);
     centres_[centreStart_[column] + layer - 1] = CellCentres(m);
@@ -128,12 +130,13 @@ bool LayerCheck::holds(const std::vector<Id>& row, const FaceMeasures& face, con
 bool LayerCheck::capsHold(Id column) const {
   thread_local std::vector<Id> row;
   const Id cell = columns_.cell(column);
-  for (Id level = 1; level < columns_.layers(column); ++level) {
-    columns_.capRow(column, level, row);
-    const FaceMeasures face = measureFace(points_, span(row));
-    if (!(face.eta >= limits_.minEtaInternal)) return false;
-    if (!holds(row, face, centre(cell, level + 1), &centre(cell, level))) return false;
-  }
+  for (Id level = 1; level < columns_.layers(column); ++level)
+    for (Id part = 0; part < columns_.capParts(column); ++part) {
+      columns_.capRow(column, level, part, row);
+      const FaceMeasures face = measureFace(points_, span(row));
+      if (!(face.eta >= limits_.minEtaInternal)) return false;
+      if (!holds(row, face, centre(cell, level + 1), &centre(cell, level))) return false;
+    }
   return true;
 }
 

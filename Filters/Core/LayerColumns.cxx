@@ -41,6 +41,7 @@ LayerColumns::LayerColumns(const PolyMesh& mesh) : mesh_(mesh), facesOfCell_(cel
   findColumns();
   edgeColumns_ = invert(edges_, mesh.points.size());
   layers_.assign(cells_.size(), 1);
+  parted_.assign(cells_.size(), 0);
   edgeLayers_.assign(mesh.points.size(), 1);
   firstPoint_.assign(mesh.points.size(), kNone);
 }
@@ -78,10 +79,11 @@ void LayerColumns::findSides() {
   }
 }
 
-/// Lower points around a prism in the wall face's order; false when the cell is no prism.
-bool LayerColumns::findRing(Id cell, Id& wallFace, std::vector<Id>& ring) const {
+/// Wall faces of a prism, and the lower points around it in the order of the wall; false when the cell is no
+/// prism.
+bool LayerColumns::findRing(Id cell, std::vector<Id>& roof, std::vector<Id>& ring) const {
   std::vector<std::pair<Id, Id>> steps;
-  wallFace = kNone;
+  roof.clear();
   ring.clear();
   if (mesh_.layer[cell] != 1) return false;
   const Id internal = mesh_.internalFaces();
@@ -91,13 +93,12 @@ bool LayerColumns::findRing(Id cell, Id& wallFace, std::vector<Id>& ring) const 
       const Id b0 = row[sideStart_[f]], b1 = row[(sideStart_[f] + 1) % row.size()];
       steps.push_back(mesh_.owner[f] == cell ? std::make_pair(b0, b1) : std::make_pair(b1, b0));
     } else if (f >= internal && mesh_.isWallPatch(mesh_.patch[f - internal])) {
-      if (wallFace != kNone) return false;
-      wallFace = f;
+      roof.push_back(f);
     } else if (std::any_of(row.begin(), row.end(), [&](Id p) { return mesh_.base[p] != kNone; })) {
       return false;
     }
   }
-  if (wallFace == kNone || steps.size() < 3) return false;
+  if (roof.empty() || steps.size() < 3) return false;
   const Id start = std::min_element(steps.begin(), steps.end())->first;
   Id at = start;
   do {
@@ -106,12 +107,23 @@ bool LayerColumns::findRing(Id cell, Id& wallFace, std::vector<Id>& ring) const 
     ring.push_back(at);
     at = step->second;
   } while (at != start);
-  return ring.size() == steps.size();
+  return ring.size() == steps.size() && (roof.size() == 1 || isBelow(roof, ring));
+}
+
+/// Is there one lower point of the ring for each point of the roof?
+bool LayerColumns::isBelow(const std::vector<Id>& roof, const std::vector<Id>& ring) const {
+  const auto below = [&](Id p) {
+    return std::count_if(ring.begin(), ring.end(), [&](Id b) { return top_[b] == p; });
+  };
+  return std::all_of(roof.begin(), roof.end(), [&](Id f) {
+    const Span<Id> row = mesh_.faces[f];
+    return std::all_of(row.begin(), row.end(), [&](Id p) { return below(p) == 1; });
+  });
 }
 
 void LayerColumns::findColumns() {
   columnOf_.assign(mesh_.cellCount, kNone);
-  std::vector<Id> lower, ring;
+  std::vector<Id> lower, roof, ring;
   for (Id c = 0; c < mesh_.cellCount; ++c) {
     lower.clear();
     bool whole = true;
@@ -129,12 +141,11 @@ void LayerColumns::findColumns() {
     columnOf_[c] = count();
     cells_.push_back(c);
     edges_.push(lower);
-    Id wallFace = kNone;
-    if (!whole || !findRing(c, wallFace, ring)) {
-      wallFace = kNone;
+    if (!whole || !findRing(c, roof, ring)) {
+      roof.clear();
       ring.clear();
     }
-    wallFace_.push_back(wallFace);
+    roofs_.push(roof);
     rings_.push(ring);
   }
 }
@@ -203,13 +214,23 @@ void LayerColumns::pieceRow(Id face, Id piece, std::vector<Id>& row) const {
 
 Id LayerColumns::layerAt(Id cell, Id face, Id piece) const {
   const Id layers = layersOfCell(cell);
-  if (layers == 1 || face == wallFace_[columnOf_[cell]]) return 1;
-  return isSide(face) ? std::min(piece, layers) : layers;
+  if (layers == 1) return 1;
+  if (isSide(face)) return std::min(piece, layers);
+  const Span<Id> roof = roofs_[columnOf_[cell]];
+  return std::find(roof.begin(), roof.end(), face) != roof.end() ? 1 : layers;
 }
 
-void LayerColumns::capRow(Id column, Id level, std::vector<Id>& row) const {
+void LayerColumns::capRow(Id column, Id level, Id part, std::vector<Id>& row) const {
   row.clear();
-  for (Id b : rings_[column]) row.push_back(pointAt(b, level));
+  const Span<Id> ring = rings_[column];
+  if (capParts(column) == 1) {  // the ring also has both lower points of a merged wall point
+    for (Id b : ring) row.push_back(pointAt(b, level));
+    return;
+  }
+  for (Id p : mesh_.faces[roofs_[column][part]]) {
+    const auto below = std::find_if(ring.begin(), ring.end(), [&](Id b) { return top_[b] == p; });
+    row.push_back(pointAt(*below, level));
+  }
 }
 
 }  // namespace pm

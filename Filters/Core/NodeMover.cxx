@@ -72,18 +72,6 @@ const char* describe(Refusal refusal) {
   return "its neighbours";
 }
 
-/// What one attempt touches and how it was before; reused from attempt to attempt, one for each thread.
-struct NodeMover::Touched {
-  std::vector<Id> shapes;  // faces of the points: their shape changes
-  std::vector<Id> cells;   // cells of the points: volume and centre change
-  std::vector<Id> faces;   // all faces of those cells: their angle changes
-  // As they were; as many as have been touched so far.
-  std::vector<Shape> oldShapes;
-  std::vector<CellState> oldCells;
-  std::vector<Relation> oldRelations;  // of the faces
-  std::vector<Vec3> oldPoints;
-};
-
 NodeMover::NodeMover(PolyMesh& mesh, const QualityLimits& limits, MoverRegion region, const Monitor* monitor)
     : mesh_(mesh),
       monitor_(monitor),
@@ -146,30 +134,26 @@ NodeMover::CellState NodeMover::cellNow(Id c) const {
   return state;
 }
 
-NodeMover::Shape NodeMover::shapeNow(Id f) const {
-  const FaceMeasures face = measureFace(mesh_.points, mesh_.faces[f]);
+NodeMover::Shape NodeMover::shapeOf(Id f, Span<Id> row) const {
+  const FaceMeasures face = measureFace(mesh_.points, row);
   return {face.centre, face.normal, rounded(face.eta, minEta(f)), rounded(face.cosWarpage, cosWarpage_)};
 }
 
-// From the current centres.
-NodeMover::Relation NodeMover::relationNow(Id f) const {
-  const FaceState& s = face(f);
-  const FaceRelation now = relate(mesh_.points, mesh_.faces[f], s.centre, s.normal, cell(mesh_.owner[f]),
-                                  isInternal(f) ? &cell(mesh_.neighbour[f]) : nullptr, minTet_);
+NodeMover::Relation NodeMover::relationOf(Id f, Span<Id> row, const Shape& s, const CellMeasures& own,
+                                          const CellMeasures* other) const {
+  const FaceRelation now = relate(mesh_.points, row, s.centre, s.normal, own, other, minTet_);
   return {rounded(now.cosAngle, minCos(f)), -rounded(-now.skew, -maxSkew(f)),
           rounded(now.weight, limits_.minFaceWeight), rounded(now.volumeRatio, limits_.minVolumeRatio),
           rounded(now.tet, minTet_)};
 }
 
-Refusal NodeMover::shapeRefuses(Id f, const Shape& old) const {
-  const Shape& now = face(f);
+Refusal NodeMover::shapeRefuses(Id f, const Shape& now, const Shape& old) const {
   if (!holds(now.eta, minEta(f), old.eta)) return Refusal::Eta;
   if (!holds(now.cosWarpage, cosWarpage_, old.cosWarpage)) return Refusal::Warpage;
   return Refusal::None;
 }
 
-Refusal NodeMover::angleRefuses(Id f, const Relation& old) const {
-  const Relation& now = face(f);
+Refusal NodeMover::angleRefuses(Id f, const Relation& now, const Relation& old) const {
   if (!holds(now.cosAngle, minCos(f), old.cosAngle)) return Refusal::Angle;
   if (!holds(-now.skew, -maxSkew(f), -old.skew)) return Refusal::Skewness;
   if (!holds(now.weight, limits_.minFaceWeight, old.weight)) return Refusal::FaceWeight;
@@ -268,7 +252,7 @@ Refusal NodeMover::tryShapes(Touched& t, double worst) {
     Shape& shape = face(f);
     t.oldShapes.push_back(shape);
     shape = shapeNow(f);
-    if (const Refusal r = shapeRefuses(f, t.oldShapes.back()); r != Refusal::None) return r;
+    if (const Refusal r = shapeRefuses(f, shape, t.oldShapes.back()); r != Refusal::None) return r;
     if (worst < kAny && badnessOfShape(f, shape) > worst) return Refusal::Other;
   }
   return Refusal::None;
@@ -291,7 +275,7 @@ Refusal NodeMover::tryAngles(Touched& t, double worst) {
     Relation& s = face(f);
     t.oldRelations.push_back(s);
     s = relationNow(f);
-    if (const Refusal r = angleRefuses(f, t.oldRelations.back()); r != Refusal::None) return r;
+    if (const Refusal r = angleRefuses(f, s, t.oldRelations.back()); r != Refusal::None) return r;
     if (worst < kAny && badnessOfRelation(f, s) > worst) return Refusal::Other;
   }
   return Refusal::None;
@@ -306,6 +290,13 @@ void NodeMover::undo(const Id* points, const Touched& t) {
   for (std::size_t i = 0; i < t.oldCells.size(); ++i) cell(t.cells[i]) = t.oldCells[i];
 }
 
+/// Points to where they shall be, but for fixed coordinates.
+void NodeMover::place(const Id* points, const Vec3* targets, Touched& t) {
+  for (std::size_t i = 0; i < t.oldPoints.size(); ++i)
+    for (int a = 0; a < 3; ++a)
+      if (!(mesh_.fixed[points[i]] >> a & 1)) mesh_.points[points[i]][a] = targets[i][a];
+}
+
 Refusal NodeMover::attempt(const Id* points, const Vec3* targets, std::size_t count, double worst,
                            const std::function<bool()>& accept) {
   const bool mustImprove = worst < kAny;
@@ -313,26 +304,25 @@ Refusal NodeMover::attempt(const Id* points, const Vec3* targets, std::size_t co
     if (!isMovable(points[i])) return Refusal::NotMovable;
   thread_local Touched t;
   t.oldPoints.clear();
-  bool moves = false;
-  const auto forEachFree = [&](const auto& body) {
-    for (std::size_t i = 0; i < count; ++i)
-      for (int a = 0; a < 3; ++a)
-        if (!(mesh_.fixed[points[i]] >> a & 1)) body(mesh_.points[points[i]][a], targets[i][a]);
-  };
   for (std::size_t i = 0; i < count; ++i) t.oldPoints.push_back(mesh_.points[points[i]]);
-  forEachFree([&](double x, double to) { moves = moves || x != to; });
+  place(points, targets, t);
+  bool moves = false;
+  for (std::size_t i = 0; i < count; ++i) moves = moves || mesh_.points[points[i]] != t.oldPoints[i];
   if (!moves) return !mustImprove && (!accept || accept()) ? Refusal::None : Refusal::Other;
   gather(points, count, t);
-  forEachFree([&](double& x, double to) { x = to; });
   Refusal refusal = tryShapes(t, worst);
   if (refusal == Refusal::None && accept && !accept()) refusal = Refusal::Other;
   if (refusal == Refusal::None) refusal = tryCells(t, worst);
   if (refusal == Refusal::None) refusal = tryAngles(t, worst);
   if (refusal == Refusal::None && mustImprove && !isBetter(t)) refusal = Refusal::Other;
-  if (refusal != Refusal::None) {
+  if (refusal == Refusal::None)
+    keep(points, t);
+  else
     undo(points, t);
-    return refusal;
-  }
+  return refusal;
+}
+
+void NodeMover::keep(const Id* points, const Touched& t) {
   const auto note = [now = tick(), this](Id c) {
     const Id slot = region_.cellSlot[c];
     if (slot < region_.cells) changed_[slot].store(now, std::memory_order_relaxed);
@@ -341,7 +331,7 @@ Refusal NodeMover::attempt(const Id* points, const Vec3* targets, std::size_t co
     note(mesh_.owner[f]);
     if (isInternal(f)) note(mesh_.neighbour[f]);
   }
-  return Refusal::None;
+  if (trial_ != nullptr) trial_->entries_.push_back({{points, points + t.oldPoints.size()}, t});
 }
 
 Id NodeMover::lastChange(Id p) const {

@@ -25,6 +25,7 @@
 
 #include "MeshQuality.h"
 #include "MoveGroups.h"
+#include "WallCuts.h"
 
 namespace pm {
 
@@ -88,6 +89,30 @@ class NodeMover {
     return attempt(points, targets, N, kAny) == Refusal::None;
   }
   bool improveTogether(const std::vector<Id>& points, const std::vector<Vec3>& targets);
+  /// Would the limits hold if a wall face of a movable point were cut from one of its points to another? What
+  /// is outside a limit already may not get worse. Thread-safe.
+  bool cutHolds(const WallCut& cut) const;
+
+  /// Moves of one thread that are kept or put back as a whole (drifting with local optimisation, 4.4.1): the
+  /// first is forced whatever it breaks, improve() at other points mends what it can, and settle() keeps all
+  /// if in the end no limit is broken that was not, and what was outside a limit is no worse.
+  class Trial {
+   public:
+    explicit Trial(NodeMover& mover);
+    ~Trial();  ///< puts everything back, to the bit, unless settled
+    Trial(const Trial&) = delete;
+    Trial& operator=(const Trial&) = delete;
+    void force(const std::vector<Id>& points, const std::vector<Vec3>& targets);
+    bool settle();
+
+   private:
+    friend class NodeMover;
+    struct Entry;
+    bool holds() const;
+    NodeMover& mover_;
+    std::vector<Entry> entries_;  // kept moves, in their order
+  };
+
   /// Worst measure around a point relative to its limit: below 1 is valid, above 1 is not.
   double badness(Id p) const;
 
@@ -95,6 +120,10 @@ class NodeMover {
   /// group they may run in parallel, with the same result for any number of threads. Greedy, in the order
   /// given.
   std::vector<std::vector<Id>> colour(const std::vector<Id>& points) const;
+  /// The same for rows of points that move in turn.
+  std::vector<std::vector<Id>> colourRows(const Csr<Id>& rows) const {
+    return groupRows(mesh_, region_, rows);
+  }
   /// The same for sweeps over many points: neighbours move one after the other, in blocks, which is kinder to
   /// the caches.
   MoveBlocks blocks(const std::vector<Id>& points) const { return groupBlocks(mesh_, region_, points); }
@@ -120,6 +149,7 @@ class NodeMover {
   }
 
   const PolyMesh& mesh() const { return mesh_; }
+  const QualityLimits& limits() const { return limits_; }
   const Vec3& point(Id p) const { return mesh_.points[p]; }
   /// Of a movable point, else none.
   Span<Id> cellsOf(Id p) const { return isMovable(p) ? region_.pointCells[slot(p)] : Span<Id>(); }
@@ -148,10 +178,25 @@ class NodeMover {
     float skew = 0, weight = 0.5, volumeRatio = 1, tet = 0;  ///< tet: smallest of OpenFOAM's decomposition
   };
   struct FaceState : Shape, Relation {};
+  struct CutParts {
+    std::vector<Id> rows[2];
+    Shape shapes[2];
+    Span<Id> row(int i) const { return {rows[i].data(), rows[i].data() + rows[i].size()}; }
+  };
   struct CellState : CellMeasures {
     double determinant = 1;
   };
-  struct Touched;  // scratch of one attempt
+  /// What one attempt touches and how it was before.
+  struct Touched {
+    std::vector<Id> shapes;  // faces of the points: their shape changes
+    std::vector<Id> cells;   // cells of the points: volume and centre change
+    std::vector<Id> faces;   // all faces of those cells: their angle changes
+    // As they were; as many as have been touched so far.
+    std::vector<Shape> oldShapes;
+    std::vector<CellState> oldCells;
+    std::vector<Relation> oldRelations;  // of the faces
+    std::vector<Vec3> oldPoints;
+  };
   static constexpr double kAny = std::numeric_limits<double>::infinity();
 
   /// worst: kept only if better, from this badness on; kAny: if valid.
@@ -160,6 +205,9 @@ class NodeMover {
 
   Refusal attempt(const Id* points, const Vec3* targets, std::size_t count, double worst,
                   const std::function<bool()>& accept = {});
+  void remeasure(Touched& t);
+  void place(const Id* points, const Vec3* targets, Touched& t);
+  void keep(const Id* points, const Touched& t);
   void gather(const Id* points, std::size_t count, Touched& t) const;
   void gatherFaces(Touched& t) const;
   Refusal tryShapes(Touched& t, double worst);
@@ -167,8 +215,8 @@ class NodeMover {
   Refusal tryAngles(Touched& t, double worst);
   void undo(const Id* points, const Touched& t);
   bool isBetter(const Touched& t) const;
-  Refusal shapeRefuses(Id f, const Shape& old) const;
-  Refusal angleRefuses(Id f, const Relation& old) const;
+  Refusal shapeRefuses(Id f, const Shape& now, const Shape& old) const;
+  Refusal angleRefuses(Id f, const Relation& now, const Relation& old) const;
   Refusal cellRefuses(const CellState& now, const CellState& old) const;
   bool isInternal(Id f) const { return f < mesh_.internalFaces(); }
   double minEta(Id f) const { return isInternal(f) ? limits_.minEtaInternal : limits_.minEtaBoundary; }
@@ -180,9 +228,17 @@ class NodeMover {
     return std::max(badnessOfShape(f, s), badnessOfRelation(f, s));
   }
   double badnessOfCell(const CellMeasures& c) const;
-  Shape shapeNow(Id f) const;
-  Relation relationNow(Id f) const;
+  Shape shapeOf(Id f, Span<Id> row) const;
+  Shape shapeNow(Id f) const { return shapeOf(f, mesh_.faces[f]); }
+  /// other: null on the boundary.
+  Relation relationOf(Id f, Span<Id> row, const Shape& s, const CellMeasures& own,
+                      const CellMeasures* other) const;
+  Relation relationNow(Id f) const {
+    return relationOf(f, mesh_.faces[f], face(f), cell(mesh_.owner[f]),
+                      isInternal(f) ? &cell(mesh_.neighbour[f]) : nullptr);
+  }
   CellState cellNow(Id c) const;
+  CellState cellWith(Id face, const CutParts& parts) const;
 
   Id slot(Id p) const { return region_.pointSlot[p]; }
   FaceState& face(Id f) { return faces_[region_.faceSlot[f]]; }
@@ -199,8 +255,14 @@ class NodeMover {
   std::vector<FaceState> faces_;
   std::vector<CellState> cells_;
   Id tick_ = 1;
-  std::vector<std::atomic<Id>> changed_;   // tick of the last kept move in the cell or across a face of it
+  std::vector<std::atomic<Id>> changed_;  // tick of the last kept move in the cell or across a face of it
+  inline static thread_local Trial* trial_ = nullptr;  // that this thread runs
   inline static thread_local Id now_ = 0;  // tick of the block's point that this thread moves; 0: none
+};
+
+struct NodeMover::Trial::Entry {
+  std::vector<Id> points;
+  Touched touched;
 };
 
 template <class Body>

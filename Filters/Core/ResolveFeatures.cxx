@@ -4,10 +4,12 @@
 #include <tbb/parallel_for.h>
 
 #include <cmath>
+#include <optional>
 
 #include "FeatureCoverage.h"
 #include "FeaturePaths.h"
 #include "FeatureSnapper.h"
+#include "FittingCuts.h"
 #include "NodeMover.h"
 #include "WallFit.h"
 #include "WallPatches.h"
@@ -17,41 +19,92 @@ namespace {
 
 constexpr int kSteps = 4;  // snapping and relaxing after each tracing
 constexpr int kPolishSweeps = 2;
-// Length scales a node counts as farther for each round it missed its target.
-constexpr float kMissPenalty = 0.3f;
 
-/// Traces and snaps; nodes that miss make room for others in the next round.
-void snapRounds(NodeMover& mover, const WallSurface& wall, const DistanceField& field,
-                const FeatureGraph& graph, const ResolveFeaturesOptions& options, Monitor& monitor) {
-  const PolyMesh& mesh = mover.mesh();
-  FeatureSnapper snapper(mover, wall, field, graph);
-  std::vector<float> penalty(wall.nodes.size(), 0.0f);
-  std::size_t fewest = wall.nodes.size() + 1;
-  const double steps = options.rounds * kSteps;
-  for (int round = 0; round < options.rounds; ++round) {
-    snapper.setTargets(traceFeatures(mesh, wall, graph, {}, penalty));
-    std::size_t before = wall.nodes.size();
+/// The stage's state. Its mover and all that knows the wall's faces are made anew when faces are cut.
+class Resolver {
+ public:
+  Resolver(PolyMesh& mesh, const DistanceField& field, const FeatureGraph& graph,
+           const ResolveFeaturesOptions& options, Monitor& monitor)
+      : mesh_(mesh), field_(field), graph_(graph), options_(options), monitor_(monitor) {
+    renew();
+    for (Id p : wall_.nodes)
+      height_.push_back(mesh.base[p] == kNone ? 0.0 : (mesh.points[p] - mesh.points[mesh.base[p]]).norm());
+  }
+
+  /// Traces and snaps; nodes that miss make room for others in the next round.
+  void snap() {
+    PathHistory history;
+    std::size_t fewest = wall_.nodes.size() + 1;
+    for (int round = 0; round < options_.rounds; ++round) {
+      setTargets(history);
+      approach(round);
+      snapper_->force();
+      const std::vector<Id> missed = snapper_->missed();
+      if (missed.empty() || missed.size() >= fewest) break;
+      fewest = missed.size();
+      snapper_->report(history);
+      if (round + 1 < options_.rounds) cut(snapper_->helpfulCuts());
+    }
+    snapper_->releaseMissed();
+    snapper_->relax();
+    for (int sweep = 0; sweep < kPolishSweeps; ++sweep) {
+      monitor_.check(0.8 + 0.1 * sweep / kPolishSweeps, "polishing");
+      snapper_->polish();
+    }
+  }
+
+  /// Brings faces nearer to the geometry: by cuts, then by moves of their nodes.
+  void fit() {
+    monitor_.check(0.85, "fitting faces");
+    cut(fittingCuts(*mover_, field_));
+    fitWall(*mover_, wall_, field_, fitRoles());
+  }
+
+  const WallSurface& wall() const { return wall_; }
+
+ private:
+  void renew() {
+    wall_ = wallSurface(mesh_);
+    mover_.emplace(mesh_, options_.limits, pointsNearWall(mesh_, 1), &monitor_);
+    if (!snapper_) snapper_.emplace(*mover_, wall_, field_, graph_, height_);
+  }
+  void cut(const std::vector<WallCut>& cuts) {
+    if (cuts.empty()) return;
+    cutWallFaces(mesh_, cuts);
+    renew();
+  }
+  void setTargets(const PathHistory& history) {
+    FeaturePathOptions options;
+    options.canCut = [&](const WallCut& c) { return mover_->cutHolds(c); };
+    const FeaturePaths paths = traceFeatures(mesh_, wall_, graph_, options, history);
+    cut(paths.cuts);
+    snapper_->setTargets(paths);
+  }
+  void approach(int round) {
+    std::size_t before = wall_.nodes.size();
     for (int step = 0; step < kSteps; ++step) {
-      monitor.check(0.05 + 0.75 * (round * kSteps + step) / steps, "feature snapping");
-      snapper.snap(false);
-      snapper.snap(true);
-      snapper.relax();
-      const std::size_t open = snapper.missed().size();
+      const double done = static_cast<double>(round * kSteps + step) / (options_.rounds * kSteps);
+      monitor_.check(0.05 + 0.75 * done, "feature snapping");
+      snapper_->snap(false);
+      snapper_->snap(true);
+      snapper_->relax();
+      const std::size_t open = snapper_->missed().size();
       if (open >= before) break;
       before = open;
     }
-    const std::vector<Id> missed = snapper.missed();
-    if (missed.empty() || missed.size() >= fewest) break;
-    fewest = missed.size();
-    for (Id row : missed) penalty[row] += kMissPenalty;
   }
-  snapper.releaseMissed();
-  snapper.relax();
-  for (int sweep = 0; sweep < kPolishSweeps; ++sweep) {
-    monitor.check(0.8 + 0.1 * sweep / kPolishSweeps, "polishing");
-    snapper.polish();
-  }
-}
+  std::vector<FitRole> fitRoles() const;
+
+  PolyMesh& mesh_;
+  const DistanceField& field_;
+  const FeatureGraph& graph_;
+  const ResolveFeaturesOptions& options_;
+  Monitor& monitor_;
+  std::vector<double> height_;  // #W prism edges at the start
+  WallSurface wall_;
+  std::optional<NodeMover> mover_;
+  std::optional<FeatureSnapper> snapper_;
+};
 
 /// Gaps below half a cell are seams of unstitched patches: the octree has sealed them. Wider ones are the
 /// user's to name.
@@ -62,14 +115,14 @@ FeatureOptions effective(FeatureOptions features, const PolyMesh& mesh) {
 }
 
 /// Nodes on features stay; smooth parts of the wall only shift, so that they keep their even mesh.
-std::vector<FitRole> fitRoles(const PolyMesh& mesh, const WallSurface& wall, const FeatureGraph& graph) {
+std::vector<FitRole> Resolver::fitRoles() const {
   constexpr double kOn = 1e-3, kNear = 2.5;  // length scales; the first is what reaches a target
-  std::vector<FitRole> roles(wall.nodes.size(), FitRole::Shift);
-  tbb::parallel_for(Id(0), wall.size(), [&](Id row) {
-    const double reach = kNear * wall.scale[row];
-    const ClosestOnFeature on = graph.closest(mesh.points[wall.nodes[row]], reach);
+  std::vector<FitRole> roles(wall_.nodes.size(), FitRole::Shift);
+  tbb::parallel_for(Id(0), wall_.size(), [&](Id row) {
+    const double reach = kNear * wall_.scale[row];
+    const ClosestOnFeature on = graph_.closest(mesh_.points[wall_.nodes[row]], reach);
     if (on.segment == kNone) return;
-    roles[row] = on.distance2 <= std::pow(kOn * wall.scale[row], 2) ? FitRole::Keep : FitRole::Search;
+    roles[row] = on.distance2 <= std::pow(kOn * wall_.scale[row], 2) ? FitRole::Keep : FitRole::Search;
   });
   return roles;
 }
@@ -83,16 +136,14 @@ void resolveFeatures(PolyMesh& mesh, DistanceField& field, const ResolveFeatures
   monitor.check(0.0, "feature detection");
   PartMonitor detection(monitor, 0.0, 0.05);
   const FeatureGraph graph = detectFeatures(field.model(), effective(options.features, mesh), &detection);
-  const WallSurface wall = wallSurface(mesh);
-  if (wall.size() > 0) {
-    NodeMover mover(mesh, options.limits, &monitor);
-    if (!graph.curves().empty()) snapRounds(mover, wall, field, graph, options, monitor);
-    monitor.check(0.85, "fitting faces");
-    fitWall(mover, wall, field, fitRoles(mesh, wall, graph));
+  Resolver resolver(mesh, field, graph, options, monitor);
+  if (resolver.wall().size() > 0) {
+    if (!graph.curves().empty()) resolver.snap();
+    resolver.fit();
   }
   monitor.check(0.9, "patches");
   assignWallPatches(mesh, field);
-  if (report != nullptr) *report = featureCoverage(mesh, wall, graph);
+  if (report != nullptr) *report = featureCoverage(mesh, resolver.wall(), graph);
   canonicalise(mesh);
   mesh.stage = Stage::Resolved;
   monitor.check(1.0, "features done");

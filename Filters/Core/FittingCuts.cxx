@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FittingCuts.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace pm {
+namespace {
+
+// In finest cells: from where on a face is off the geometry. And the share of its distance that a cut may
+// leave.
+constexpr double kOff = 0.05, kMostLeft = 0.7;
+
+class CutChooser {
+ public:
+  CutChooser(const NodeMover& mover, const DistanceField& field)
+      : mover_(mover), mesh_(mover.mesh()), field_(field) {}
+
+  WallCut choose(Id face) const {
+    const Span<Id> row = mesh_.faces[face];
+    const std::size_t n = row.size();
+    WallCut best;
+    if (n < 4) return best;
+    const double now = distance(mover_.faceCentre(face));
+    if (now < kOff * mesh_.finestSize) return best;
+    double least = kMostLeft * now;
+    for (std::size_t i = 0; i + 2 < n; ++i)
+      for (std::size_t j = i + 2; j < n && j < i + n - 1; ++j) {
+        const double left = distanceWith(row, row[i], row[j], least);
+        if (left >= least || !mover_.cutHolds({face, row[i], row[j]})) continue;
+        least = left;
+        best = {face, row[i], row[j]};
+      }
+    return best;
+  }
+
+ private:
+  double distance(const Vec3& p) const { return std::sqrt(field_.closest(p).distance2); }
+  double distanceWith(Span<Id> row, Id a, Id b, double enough) const {
+    double worst = distance(0.5 * (mesh_.points[a] + mesh_.points[b]));
+    std::vector<Id> parts[2];
+    cutRow(row, a, b, parts[0], parts[1]);
+    for (const std::vector<Id>& part : parts)
+      if (worst < enough)
+        worst = std::max(
+            worst,
+            distance(measureFace(mesh_.points, {part.data(), part.data() + part.size()}, true).centre));
+    return worst;
+  }
+
+  const NodeMover& mover_;
+  const PolyMesh& mesh_;
+  const DistanceField& field_;
+};
+
+}  // namespace
+
+std::vector<WallCut> fittingCuts(const NodeMover& mover, const DistanceField& field) {
+  const PolyMesh& mesh = mover.mesh();
+  const CutChooser chooser(mover, field);
+  std::vector<WallCut> cuts(mesh.boundaryFaces());
+  tbb::parallel_for(Id(0), mesh.boundaryFaces(), [&](Id b) {
+    if (mesh.isWallPatch(mesh.patch[b])) cuts[b] = chooser.choose(mesh.internalFaces() + b);
+  });
+  cuts.erase(std::remove_if(cuts.begin(), cuts.end(), [](const WallCut& c) { return c.face == kNone; }),
+             cuts.end());
+  return cuts;
+}
+
+}  // namespace pm

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Wall faces that lie nearer to the geometry when cut in two (thesis 4.7.3; part of ResolveFeatures).
+#pragma once
+
+#include "DistanceField.h"
+#include "NodeMover.h"
+#include "WallCuts.h"
+
+namespace pm {
+
+/// For every wall face whose centre is off the geometry: the diagonal whose parts are much nearer to it,
+/// judged by their centres and the middle of the diagonal (eq 4-20), if the mesh keeps its limits with it.
+/// Ascending by face; the same bits for any number of threads.
+std::vector<WallCut> fittingCuts(const NodeMover& mover, const DistanceField& field);
+
+}  // namespace pm
