@@ -126,8 +126,11 @@ std::vector<FeatureDemand::Run> FeatureDemand::runsNear(const Box& around, const
   return runs;
 }
 
-FeatureDemand::Demand FeatureDemand::asNeeded(const Box& cell) const {
-  const Box around = grown(cell, std::max(cell.size().maxCoeff(), options_.featureBuffer * finest_));
+FeatureDemand::Demand FeatureDemand::asNeeded(const Box& leaf) const {
+  // What lies on a cell's side lies in it, however scale and offset round it.
+  constexpr double kTouch = 1e-6;
+  const Box cell = grown(leaf, kTouch * finest_);
+  const Box around = grown(cell, std::max(leaf.size().maxCoeff(), options_.featureBuffer * finest_));
   const std::vector<Run> runs = runsNear(around, cell);
   std::vector<Id> corners;
   const auto addCorner = [&](Id c) {

@@ -43,7 +43,7 @@ class FeatureDemand {
  private:
   bool counts(const FeatureSegment& segment) const { return (segment.kind & kinds_) != 0; }
   Answer fullDepth(const Box& cell) const;
-  Demand asNeeded(const Box& cell) const;
+  Demand asNeeded(const Box& leaf) const;
   struct Run;
   std::vector<Run> runsNear(const Box& around, const Box& cell) const;
   bool isNear(const Box& cell, const std::vector<Run>& runs) const;

@@ -90,7 +90,11 @@ class PathFinder {
   Id findRepresentative(Id corner) const;
   void placeCorners();
   void traceCurve(CurveTracer& tracer, Id curve);
-  CurveTracer::Task makeTask(Id curve, double scale) const;
+  CurveTracer::Task makeTask(Id curve, Id zone, double scale) const;
+  CurveState traceInZone(CurveTracer& tracer, Id curve, Id zone, double scale);
+  void findZones();
+  Id& cornerRow(Id corner, Id zone) { return cornerRow_[zone * graph_.corners().size() + corner]; }
+  Id cornerRow(Id corner, Id zone) const { return cornerRow_[zone * graph_.corners().size() + corner]; }
   void chooseLoopStart(CurveTracer::Task& task) const;
   double curveScale(Id curve) const;
   void keepPiece(Id curve, const std::vector<PathNode>& piece, double shift, double scale);
@@ -108,9 +112,11 @@ class PathFinder {
   Neighbourhood near_;
   std::vector<double> cornerScale_;  // #corners length scale, 0 where no wall node is near
   std::vector<Id> representative_;   // #corners
-  std::vector<Id> cornerRow_;        // #corners wall row, of representatives
-  std::vector<NodeTarget> taken_;    // #W
-  std::vector<char> cut_;            // #boundary faces that a path crosses
+  std::vector<Id> zone_;             // #W zone of the cells behind the wall; 0 in a mesh of one zone
+  std::vector<Id> cornerRow_;        // #zones by #corners wall row
+  Id zones_ = 1;
+  std::vector<NodeTarget> taken_;  // #W
+  std::vector<char> cut_;          // #boundary faces that a path crosses
   FeaturePaths result_;
 };
 
@@ -228,19 +234,30 @@ void PathFinder::mergeCorners() {
   }
 }
 
+/// Features between two zones are features of the walls of both.
+void PathFinder::findZones() {
+  zone_.assign(wall_.nodes.size(), 0);
+  if (mesh_.zone.empty()) return;
+  zones_ = static_cast<Id>(mesh_.zoneNames.size());
+  for (Id row = 0; row < wall_.size(); ++row) zone_[row] = mesh_.zone[mesh_.owner[wall_.faces[row][0]]];
+}
+
 void PathFinder::placeCorners() {
-  cornerRow_.assign(graph_.corners().size(), kNone);
+  const Id corners = static_cast<Id>(graph_.corners().size());
+  cornerRow_.assign(static_cast<std::size_t>(corners) * zones_, kNone);
   for (const NearCorner& n : near_.corners) {
-    if (representative_[n.corner] != n.corner || cornerRow_[n.corner] != kNone) continue;
-    if (!isFree(n.row, kNone, n.corner)) continue;
-    cornerRow_[n.corner] = n.row;
+    Id& row = cornerRow(n.corner, zone_[n.row]);
+    if (representative_[n.corner] != n.corner || row != kNone || !isFree(n.row, kNone, n.corner)) continue;
+    row = n.row;
     taken_[n.row] = {wall_.nodes[n.row], kNone, n.corner, graph_.corners()[n.corner]};
   }
-  result_.cornerNode.assign(graph_.corners().size(), kNone);
-  for (std::size_t c = 0; c < cornerRow_.size(); ++c) {
-    cornerRow_[c] = cornerRow_[representative_[c]];
-    if (cornerRow_[c] != kNone) result_.cornerNode[c] = wall_.nodes[cornerRow_[c]];
-  }
+  result_.cornerNode.assign(corners, kNone);
+  for (Id zone = zones_; zone-- > 0;)
+    for (Id c = 0; c < corners; ++c) {
+      Id& row = cornerRow(c, zone);
+      row = cornerRow(representative_[c], zone);
+      if (row != kNone) result_.cornerNode[c] = wall_.nodes[row];
+    }
 }
 
 double PathFinder::curveScale(Id curve) const {
@@ -267,13 +284,13 @@ void PathFinder::chooseLoopStart(CurveTracer::Task& task) const {
   }
 }
 
-CurveTracer::Task PathFinder::makeTask(Id curve, double scale) const {
+CurveTracer::Task PathFinder::makeTask(Id curve, Id zone, double scale) const {
   const FeatureCurve& shape = graph_.curves()[curve];
   CurveTracer::Task task;
   task.curve = curve;
   task.scale = scale;
   for (const NearNode& n : near_.curves[curve])
-    if (isFree(n.row, curve, kNone)) task.nodes.push_back(n);
+    if (zone_[n.row] == zone && isFree(n.row, curve, kNone)) task.nodes.push_back(n);
   if (shape.closed) {
     chooseLoopStart(task);
     return task;
@@ -281,8 +298,8 @@ CurveTracer::Task PathFinder::makeTask(Id curve, double scale) const {
   const auto distance = [&](Id row, Id corner) {
     return (mesh_.points[wall_.nodes[row]] - graph_.corners()[corner]).norm() / wall_.scale[row];
   };
-  if (shape.startCorner != kNone) task.startRow = cornerRow_[shape.startCorner];
-  if (shape.endCorner != kNone) task.endRow = cornerRow_[shape.endCorner];
+  if (shape.startCorner != kNone) task.startRow = cornerRow(shape.startCorner, zone);
+  if (shape.endCorner != kNone) task.endRow = cornerRow(shape.endCorner, zone);
   if (task.startRow != kNone) task.startDistance = distance(task.startRow, shape.startCorner);
   if (task.endRow != kNone) task.endDistance = distance(task.endRow, shape.endCorner);
   return task;
@@ -341,16 +358,21 @@ void PathFinder::keepPiece(Id curve, const std::vector<PathNode>& piece, double 
 }
 
 void PathFinder::traceCurve(CurveTracer& tracer, Id curve) {
-  const FeatureCurve& shape = graph_.curves()[curve];
-  CurveState& state = result_.curves[curve];
   if (near_.curves[curve].empty()) return;
-  const double scale = curveScale(curve), length = table_.length(curve);
-  CurveTracer::Task task = makeTask(curve, scale);
-  const bool loop = shape.closed || (task.startRow != kNone && task.startRow == task.endRow);
-  if (length < (loop ? options_.shortestLoop : options_.shortest) * scale) {
-    state = CurveState::Short;
-    return;
-  }
+  const double scale = curveScale(curve);
+  std::vector<Id> zones;
+  for (const NearNode& n : near_.curves[curve]) zones.push_back(zone_[n.row]);
+  std::sort(zones.begin(), zones.end());
+  zones.erase(std::unique(zones.begin(), zones.end()), zones.end());
+  CurveState& state = result_.curves[curve];
+  for (Id zone : zones) state = std::max(state, traceInZone(tracer, curve, zone, scale));
+}
+
+CurveState PathFinder::traceInZone(CurveTracer& tracer, Id curve, Id zone, double scale) {
+  const double length = table_.length(curve);
+  CurveTracer::Task task = makeTask(curve, zone, scale);
+  const bool loop = graph_.curves()[curve].closed || (task.startRow != kNone && task.startRow == task.endRow);
+  if (length < (loop ? options_.shortestLoop : options_.shortest) * scale) return CurveState::Short;
   double traced = 0;
   std::size_t pieces = 0;
   for (const std::vector<PathNode>& piece : tracer.trace(task)) {
@@ -359,7 +381,8 @@ void PathFinder::traceCurve(CurveTracer& tracer, Id curve) {
     traced += piece.back().arc - piece.front().arc;
     ++pieces;
   }
-  if (pieces > 0) state = pieces == 1 && traced > length - scale ? CurveState::Traced : CurveState::Partial;
+  if (pieces == 0) return CurveState::Unreached;
+  return pieces == 1 && traced > length - scale ? CurveState::Traced : CurveState::Partial;
 }
 
 /// Paths cross a face once at most: ways across it might cross each other.
@@ -376,6 +399,7 @@ FeaturePaths PathFinder::find() {
   taken_.resize(wall_.nodes.size());
   result_.curves.assign(graph_.curves().size(), CurveState::Unreached);
   gather();
+  findZones();
   mergeCorners();
   placeCorners();
   std::vector<Id> order(graph_.curves().size());

@@ -7,9 +7,9 @@
 // it.
 //
 // Passes: corners closer than half a length scale are one; every corner takes one node, nearest pairs first;
-// curves, longest first, take the cheapest path through nodes nobody has taken; nodes of a path are spaced
-// along the arc. Where no path exists (the wall ends, another feature is in the way) the curve is bridged by
-// a gap, so that the longest possible pieces are found.
+// curves, longest first (in each zone of the mesh they touch), take the cheapest path through nodes nobody
+// has taken; nodes of a path are spaced along the arc. Where no path exists (the wall ends, another feature
+// is in the way) the curve is bridged by a gap, so that the longest possible pieces are found.
 //
 // Guarantees: a node has at most one target; paths share no node but corners; a pure function of its
 // arguments, the same bits for any number of threads; time O((n + m) log m) for n wall nodes and m pairs of a

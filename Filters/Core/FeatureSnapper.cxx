@@ -52,20 +52,27 @@ void FeatureSnapper::setTargets(const FeaturePaths& paths) {
       before_[b] = a;
     }
   }
-  findActive();
+  workAround(missed());
 }
 
-void FeatureSnapper::findActive() {
-  std::vector<Id> rows, ring;
+void FeatureSnapper::workAroundAll() {
+  std::vector<Id> rows;
   for (Id row = 0; row < wall_.size(); ++row)
-    if (role_[row] != Role::Outside) rows.push_back(row);
-  ring = rows;
+    if (role_[row] == Role::Curve || role_[row] == Role::Corner) rows.push_back(row);
+  workAround(rows);
+}
+
+void FeatureSnapper::workAround(std::vector<Id> rows) {
+  std::vector<char> seen(wall_.nodes.size(), 0);
+  for (Id row : rows) seen[row] = 1;
+  std::vector<Id> ring = rows;
   for (int r = 0; r < kRings; ++r) {
     std::vector<Id> next;
     for (Id row : ring)
       for (Id n : wall_.neighbours[row])
-        if (role_[n] == Role::Outside) {
-          role_[n] = Role::Free;
+        if (!seen[n]) {
+          seen[n] = 1;
+          if (role_[n] == Role::Outside) role_[n] = Role::Free;
           next.push_back(n);
         }
     rows.insert(rows.end(), next.begin(), next.end());

@@ -19,8 +19,11 @@ class FeatureSnapper {
   FeatureSnapper(NodeMover& mover, const WallSurface& wall, const DistanceField& field,
                  const FeatureGraph& graph, const std::vector<double>& height);
 
-  /// Takes over targets, and works from now on around them (three rings of wall nodes).
+  /// Takes over targets, and works from now on around those that are not reached.
   void setTargets(const FeaturePaths& paths);
+  /// relax() and polish() keep to three rings of wall nodes around these rows; around all targets.
+  void workAround(std::vector<Id> rows);
+  void workAroundAll();
   /// Moves the nodes of curves, or those of corners, towards their targets, nearest first (eq 4-31).
   void snap(bool corners);
   /// Smooths free wall nodes along the geometry, then the lower ends of their prism edges, then the points
@@ -59,7 +62,6 @@ class FeatureSnapper {
   void smoothWallNode(Id row, bool onlyBetter);
   void slideOnCurve(Id row);
   void settleBase(Id row, bool onlyBetter);
-  void findActive();
   std::vector<std::vector<Id>> columnGroups(const std::vector<Id>& rows) const;
   bool stirred(Id row, std::vector<Id>& tried);
   bool stirredBelow(Id point);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace pm {
 namespace {
@@ -12,6 +13,9 @@ namespace {
 // In finest cells: from where on a face is off the geometry. And the share of its distance that a cut may
 // leave.
 constexpr double kOff = 0.05, kMostLeft = 0.7;
+// Cosine of 20 degrees: faces whose parts would not bend by that much only have the chord error of a smooth
+// surface, and without a cut the prisms below take more layers.
+constexpr double kFolds = 0.94;
 
 class CutChooser {
  public:
@@ -38,15 +42,18 @@ class CutChooser {
 
  private:
   double distance(const Vec3& p) const { return std::sqrt(field_.closest(p).distance2); }
+  /// Of the parts' centres and the middle of the cut; infinite when the face does not fold there.
   double distanceWith(Span<Id> row, Id a, Id b, double enough) const {
+    std::vector<Id> rows[2];
+    cutRow(row, a, b, rows[0], rows[1]);
+    FaceMeasures parts[2];
+    for (int i : {0, 1})
+      parts[i] = measureFace(mesh_.points, {rows[i].data(), rows[i].data() + rows[i].size()}, true);
+    if (parts[0].normal.stableNormalized().dot(parts[1].normal.stableNormalized()) > kFolds)
+      return std::numeric_limits<double>::infinity();
     double worst = distance(0.5 * (mesh_.points[a] + mesh_.points[b]));
-    std::vector<Id> parts[2];
-    cutRow(row, a, b, parts[0], parts[1]);
-    for (const std::vector<Id>& part : parts)
-      if (worst < enough)
-        worst = std::max(
-            worst,
-            distance(measureFace(mesh_.points, {part.data(), part.data() + part.size()}, true).centre));
+    for (const FaceMeasures& part : parts)
+      if (worst < enough) worst = std::max(worst, distance(part.centre));
     return worst;
   }
 

@@ -8,9 +8,9 @@
 
 namespace pm {
 
-/// For every wall face whose centre is off the geometry: the diagonal whose parts are much nearer to it,
-/// judged by their centres and the middle of the diagonal (eq 4-20), if the mesh keeps its limits with it.
-/// Ascending by face; the same bits for any number of threads.
+/// For every wall face that folds and whose centre is off the geometry: the diagonal whose parts are much
+/// nearer to it, judged by their centres and the middle of the diagonal (eq 4-20), if the mesh keeps its
+/// limits with it. Ascending by face; the same bits for any number of threads.
 std::vector<WallCut> fittingCuts(const NodeMover& mover, const DistanceField& field);
 
 }  // namespace pm

@@ -74,7 +74,7 @@ struct OctreeDecomposeOptions {
   bool refineInterfaces = true;     ///< 5: edges between patches
   OpenEdgeRefinement refineOpen = OpenEdgeRefinement::Seams;  ///< 5: open edges
   bool refineCorners = true;                                  ///< 5: ends and joints of critical edges
-  FeatureDepth featureDepth = FeatureDepth::Full;
+  FeatureDepth featureDepth = FeatureDepth::AsNeeded;
   int cellsBetweenLevels = 1;  ///< 6, growth: cells of one level before the next coarser one; 1 = balance
   int featureBuffer = 1;       ///< 7: cells of the finest size around a critical edge
   int bufferCells = 1;         ///< 8: cells of the same level beside a cell that touches the geometry

@@ -17,7 +17,6 @@
 namespace pm {
 namespace {
 
-constexpr int kSteps = 4;  // snapping and relaxing after each tracing
 constexpr int kPolishSweeps = 2;
 
 /// The stage's state. Its mover and all that knows the wall's faces are made anew when faces are cut.
@@ -34,17 +33,18 @@ class Resolver {
   /// Traces and snaps; nodes that miss make room for others in the next round.
   void snap() {
     PathHistory history;
-    std::size_t fewest = wall_.nodes.size() + 1;
     for (int round = 0; round < options_.rounds; ++round) {
+      monitor_.check(0.05 + 0.75 * round / options_.rounds, "feature snapping");
       setTargets(history);
-      approach(round);
+      snapper_->snap(false);
+      snapper_->snap(true);
+      snapper_->relax();
       snapper_->force();
-      const std::vector<Id> missed = snapper_->missed();
-      if (missed.empty() || missed.size() >= fewest) break;
-      fewest = missed.size();
+      if (snapper_->missed().empty()) break;
       snapper_->report(history);
       if (round + 1 < options_.rounds) cut(snapper_->helpfulCuts());
     }
+    snapper_->workAroundAll();
     snapper_->releaseMissed();
     snapper_->relax();
     for (int sweep = 0; sweep < kPolishSweeps; ++sweep) {
@@ -79,19 +79,6 @@ class Resolver {
     const FeaturePaths paths = traceFeatures(mesh_, wall_, graph_, options, history);
     cut(paths.cuts);
     snapper_->setTargets(paths);
-  }
-  void approach(int round) {
-    std::size_t before = wall_.nodes.size();
-    for (int step = 0; step < kSteps; ++step) {
-      const double done = static_cast<double>(round * kSteps + step) / (options_.rounds * kSteps);
-      monitor_.check(0.05 + 0.75 * done, "feature snapping");
-      snapper_->snap(false);
-      snapper_->snap(true);
-      snapper_->relax();
-      const std::size_t open = snapper_->missed().size();
-      if (open >= before) break;
-      before = open;
-    }
   }
   std::vector<FitRole> fitRoles() const;
 

@@ -134,7 +134,7 @@ void fitWall(NodeMover& mover, const WallSurface& wall, const DistanceField& fie
     if (roles[row] != FitRole::Keep) free.push_back(wall.nodes[row]);
     if (roles[row] == FitRole::Search) searching.push_back(wall.nodes[row]);
   }
-  const auto freeGroups = mover.colour(free), searchGroups = mover.colour(searching);
+  const MoveBlocks freeGroups = mover.blocks(free), searchGroups = mover.blocks(searching);
   WallFitter fitter(mover, wall, field);
   const auto shift = [&] { mover.forEach(freeGroups, [&](Id p) { fitter.fit(p); }); };
   for (int sweep = 0; sweep < kFitSweeps; ++sweep) shift();

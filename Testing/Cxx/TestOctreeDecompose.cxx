@@ -28,6 +28,7 @@ TEST(OctreeDecompose, IsCompleteBalancedAndAsFineAsAskedOnEdges) {
   const auto model = cube().model();
   OctreeDecomposeOptions o;
   o.featureSize = 0.05;
+  o.featureDepth = FeatureDepth::Full;
   const Octree tree = run(*model, o);
   EXPECT_TRUE(isComplete(tree));
   EXPECT_TRUE(isBalanced(tree));
@@ -42,6 +43,7 @@ TEST(OctreeDecompose, DomainEndsExactlyOnCellFaces) {
   const auto model = cube().model();
   OctreeDecomposeOptions o;
   o.featureSize = 0.125;
+  o.featureDepth = FeatureDepth::Full;
   o.baseSize = 0.9;
   o.useDomain = true;
   o.domain.add(Vec3(-1, -2, -1.5));
@@ -101,6 +103,7 @@ TEST(OctreeDecompose, RefusesWhatCannotBeMeshed) {
   o.featureSize = 1e-9;
   EXPECT_THROW(run(*model, o), InputError);
   o.featureSize = 0.001;
+  o.featureDepth = FeatureDepth::Full;
   o.maxCells = 10000;
   EXPECT_THROW(run(*model, o), BudgetError);
   o = {};
@@ -114,13 +117,16 @@ TEST(OctreeDecompose, RefusesWhatCannotBeMeshed) {
 }
 
 TEST(OctreeDecompose, ScaleAndOffsetDoNotMatter) {
-  OctreeDecomposeOptions o;
-  o.featureSize = 0.1;
-  const Id expected = run(*cube(4).model(), o).size();
-  for (double scale : {1e-30, 1e-3, 1e30}) {
-    const auto model = cube(4).mapped([&](const Vec3& p) { return Vec3(scale * p); }).model();
-    o.featureSize = 0.1 * scale;
-    EXPECT_EQ(run(*model, o).size(), expected) << "scale " << scale;
+  for (FeatureDepth depth : {FeatureDepth::AsNeeded, FeatureDepth::Full}) {
+    OctreeDecomposeOptions o;
+    o.featureDepth = depth;
+    o.featureSize = 0.1;
+    const Id expected = run(*cube(4).model(), o).size();
+    for (double scale : {1e-30, 1e-3, 1e30}) {
+      const auto model = cube(4).mapped([&](const Vec3& p) { return Vec3(scale * p); }).model();
+      o.featureSize = 0.1 * scale;
+      EXPECT_EQ(run(*model, o).size(), expected) << "scale " << scale;
+    }
   }
 }
 

@@ -24,6 +24,7 @@ OctreeDecomposeOptions bare(double featureSize) {
   o.normalAngle = 0;
   o.separate = o.refineEdges = false;
   o.bufferCells = 0;
+  o.featureDepth = FeatureDepth::Full;
   return o;
 }
 
@@ -376,10 +377,11 @@ TEST(RefinementCriteria, FeatureDepthAsNeeded) {
   const auto model = cube().model();
   OctreeDecomposeOptions o;
   o.featureSize = 0.02;
-  const Octree full = run(*model, o);
-  o.featureDepth = FeatureDepth::AsNeeded;
   const Octree needed = run(*model, o);
+  o.featureDepth = FeatureDepth::Full;
+  const Octree full = run(*model, o);
   EXPECT_LT(10 * needed.size(), full.size());
+  o.featureDepth = FeatureDepth::AsNeeded;
   // A bar of 0.1 by 0.1: its long edges are told apart, with a free cell between them, and no further.
   const auto bar = cube().mapped([](const Vec3& p) { return Vec3(p[0], 0.1 * p[1], 0.1 * p[2]); }).model();
   const Octree tree = run(*bar, o);

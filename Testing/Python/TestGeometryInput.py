@@ -15,6 +15,7 @@ def front(geometry, patch_array=None, size=0.1):
     mesh.SetInputDataObject(geometry)
     mesh.SetFeatureSize(size)
     mesh.SetStopAfter(2)
+    mesh.SetFeatureDepth(1)  # Full: faces of the front that lie on one side of the box each
     if patch_array is not None:
         mesh.SetPatchArray(patch_array)
     messages = Messages(mesh)
