@@ -187,15 +187,25 @@ std::vector<Id> pointsInTrouble(const PolyMesh& mesh, const NodeMover& mover) {
   return points;
 }
 
+/// Limits tighter than a front of cubes can keep.
+void warnOf(const std::vector<Id>& points, const PolyMesh& mesh, Monitor& monitor) {
+  const Vec3& p = mesh.points[points.front()];
+  monitor.warning(
+      fmt::format("Prisms at {} points of the wall, the first at ({:g}, {:g}, {:g}), are outside the quality "
+                  "limits and cannot be brought within; later stages make them no worse. Widen the limits.",
+                  points.size() / 2, p[0], p[1], p[2]));
+}
+
 // Where the ideal directions give a prism outside the limits, points try small steps in all directions for a
 // better one: the layer's step 2 (Fig. 4-7), by search instead of by rule.
 void relax(PolyMesh& mesh, const QualityLimits& limits, Monitor& monitor) {
   NodeMover mover(mesh, limits, pointsNearWall(mesh, 0), &monitor);
   constexpr int kRounds = 12;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0;; ++round) {
     monitor.check(0.3 + 0.6 * round / kRounds, "layer optimisation");
     const std::vector<Id> points = pointsInTrouble(mesh, mover);
     if (points.empty()) return;
+    if (round == kRounds) return warnOf(points, mesh, monitor);
     const auto groups = mover.colour(points);
     mover.forEach(groups, [&](Id p) {
       const Id base = mesh.base[p];

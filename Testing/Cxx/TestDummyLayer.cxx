@@ -50,6 +50,21 @@ TEST(DummyLayer, OnePrismOnEachFrontFaceAndValid) {
   }
 }
 
+TEST(DummyLayer, SaysWhichLimitsNoPrismCanKeep) {
+  struct Listener : Monitor {
+    void warning(const std::string& sentence) override { warnings.push_back(sentence); }
+    std::vector<std::string> warnings;
+  } listener;
+  const PolyMesh before = front(*cylinder(48).model(), 0.12, false);
+  dummyLayer(before, {}, listener);
+  EXPECT_TRUE(listener.warnings.empty());
+  DummyLayerOptions o;
+  o.limits.maxAngleBoundary = 5;  // on a staircase
+  EXPECT_EQ(dummyLayer(before, o, listener).cellCount, before.cellCount + wallFaces(before));
+  ASSERT_EQ(listener.warnings.size(), 1u);
+  EXPECT_NE(listener.warnings[0].find("Widen the limits"), std::string::npos) << listener.warnings[0];
+}
+
 TEST(DummyLayer, StaysOnTheDomainSides) {
   // The cylinder stands through the floor of the domain, so its front ends there.
   const auto model = cylinder(32).model();

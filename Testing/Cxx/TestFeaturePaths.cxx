@@ -261,24 +261,160 @@ TEST(FeaturePaths, KeepsNodesOnTheirDomainSide) {
     }
 }
 
+// ------------------------------------------------------------------------------------- paths across faces
+
+void expectSame(const FeaturePaths& a, const FeaturePaths& b) {
+  ASSERT_EQ(a.targets.size(), b.targets.size());
+  for (std::size_t i = 0; i < a.targets.size(); ++i) {
+    EXPECT_EQ(a.targets[i].node, b.targets[i].node);
+    EXPECT_EQ(a.targets[i].target, b.targets[i].target);
+  }
+  ASSERT_EQ(a.cuts.size(), b.cuts.size());
+  for (std::size_t i = 0; i < a.cuts.size(); ++i) {
+    EXPECT_EQ(a.cuts[i].face, b.cuts[i].face);
+    EXPECT_EQ(a.cuts[i].a, b.cuts[i].a);
+    EXPECT_EQ(a.cuts[i].b, b.cuts[i].b);
+  }
+}
+
+FeaturePathOptions cutting(std::function<bool(const WallCut&)> canCut = [](const WallCut&) { return true; }) {
+  FeaturePathOptions options;
+  options.canCut = std::move(canCut);
+  return options;
+}
+
+/// The paths with cuts, and the mesh with these made; expects what holds for any of them.
+struct CutPaths {
+  PolyMesh mesh;
+  FeaturePaths paths;
+};
+CutPaths traceAcross(const PolyMesh& mesh, const FeatureGraph& graph, const FeaturePathOptions& options) {
+  CutPaths r{mesh, traceFeatures(mesh, wallSurface(mesh), graph, options)};
+  std::set<Id> faces;
+  for (const WallCut& cut : r.paths.cuts) {
+    EXPECT_TRUE(faces.insert(cut.face).second) << "two cuts of face " << cut.face;
+    const Span<Id> row = mesh.faces[cut.face];
+    const auto at = [&](Id p) { return std::find(row.begin(), row.end(), p) - row.begin(); };
+    EXPECT_LT(std::max(at(cut.a), at(cut.b)), 4);
+    EXPECT_EQ(std::abs(at(cut.a) - at(cut.b)), 2);
+  }
+  cutWallFaces(r.mesh, r.paths.cuts);
+  expectSound(r.mesh, wallSurface(r.mesh), graph, r.paths);
+  return r;
+}
+
+Drawing diagonal(int n) {
+  Drawing d;
+  d.line(Vec3(1, 1, n), Vec3(n - 1, n - 1, n));
+  return d;
+}
+
+TEST(FeaturePaths, GoAcrossFacesAlongADiagonal) {
+  const PolyMesh mesh = blockWall(12);
+  const FeatureGraph graph = diagonal(12).graph();
+  const FeaturePaths stairs = trace(mesh, graph);
+  EXPECT_TRUE(stairs.cuts.empty());
+  ASSERT_EQ(stairs.pieces.rows(), 1);
+  EXPECT_GT(stairs.pieces[0].size(), 18u);
+  const FeaturePaths across = traceAcross(mesh, graph, cutting()).paths;
+  EXPECT_EQ(across.curves[0], CurveState::Traced);
+  ASSERT_EQ(across.pieces.rows(), 1);
+  EXPECT_EQ(across.pieces[0].size(), 11u);
+  EXPECT_EQ(across.cuts.size(), 10u);
+  for (const NodeTarget& t : across.targets) EXPECT_LT((t.target - mesh.points[t.node]).norm(), 1e-12);
+}
+
+TEST(FeaturePaths, CutOnlyWhatTheyMay) {
+  const PolyMesh mesh = blockWall(12);
+  Drawing d;
+  d.line(Vec3(1.2, 1.3, 12), Vec3(10.9, 8.1, 12));
+  d.circle(Vec3(6.1, 5.8, 0), 3.3);
+  const FeatureGraph graph = d.graph();
+  const FeaturePaths plain = trace(mesh, graph);
+  int asked = 0;
+  const FeaturePaths refused = traceAcross(mesh, graph, cutting([&](const WallCut&) {
+                                             ++asked;
+                                             return false;
+                                           }))
+                                   .paths;
+  EXPECT_GT(asked, 20);
+  EXPECT_TRUE(refused.cuts.empty());
+  expectSame(refused, plain);
+  EXPECT_EQ(refused.pieces.values, plain.pieces.values);
+  const auto even = [](const WallCut& cut) { return cut.face % 2 == 0; };
+  const FeaturePaths some = traceAcross(mesh, graph, cutting(even)).paths;
+  EXPECT_FALSE(some.cuts.empty());
+  for (const WallCut& cut : some.cuts) EXPECT_TRUE(even(cut));
+  for (CurveState state : some.curves) EXPECT_EQ(state, CurveState::Traced);
+}
+
+TEST(FeaturePaths, AreNoLongerAndNoFartherWithCuts) {
+  const PolyMesh mesh = blockWall(12);
+  for (int i = 0; i < 12; ++i) {
+    const double turn = 0.5 * M_PI * i / 12;
+    Drawing d;
+    const Vec3 way(std::cos(turn), std::sin(turn), 0), middle(6.2, 5.9, 12);
+    d.line(middle - 4.5 * way, middle + 4.5 * way);
+    const FeatureGraph graph = d.graph();
+    const auto nodesAndMiss = [&](const FeaturePaths& paths) {
+      double miss = 0;
+      for (const NodeTarget& t : paths.targets) miss += (t.target - mesh.points[t.node]).squaredNorm();
+      return std::pair(paths.targets.size(), miss);
+    };
+    const auto [nodes, miss] = nodesAndMiss(trace(mesh, graph));
+    const auto [nodesAcross, missAcross] = nodesAndMiss(traceAcross(mesh, graph, cutting()).paths);
+    EXPECT_LE(nodesAcross, nodes) << "line " << i;
+    EXPECT_LE(missAcross, miss + 0.3) << "line " << i;
+  }
+}
+
+TEST(FeaturePaths, OfTwoCurvesOneCrossesAFace) {
+  const PolyMesh mesh = blockWall(12);
+  Drawing d = diagonal(12);
+  d.line(Vec3(1, 10, 12), Vec3(10, 1, 12));  // crosses the other in the middle of a face
+  const FeaturePaths paths = traceAcross(mesh, d.graph(), cutting()).paths;
+  EXPECT_EQ(paths.curves[0], CurveState::Traced);
+  EXPECT_GE(paths.cuts.size(), 15u);
+}
+
+TEST(FeaturePaths, NoFaceLiesOnAPathAsAWhole) {
+  // A curve that turns back within a face would take all its points.
+  const PolyMesh mesh = blockWall(12);
+  for (int i = 0; i < 20; ++i) {
+    Drawing d;
+    d.circle(Vec3(6 + 0.05 * i, 6 - 0.03 * i, 12), 0.6 + 0.1 * i);
+    const CutPaths r = traceAcross(mesh, d.graph(), cutting());
+    std::vector<char> onPath(mesh.points.size(), 0);
+    for (Id piece = 0; piece < r.paths.pieces.rows(); ++piece) {
+      const Span<Id> row = r.paths.pieces[piece];
+      if (row.size() < 6) continue;
+      for (std::size_t k = 0; k + 3 < row.size(); ++k) {
+        const std::set<Id> run(row.begin() + k, row.begin() + k + 4);
+        for (Id f = 0; f < r.mesh.faceCount(); ++f)
+          EXPECT_FALSE(std::all_of(r.mesh.faces[f].begin(), r.mesh.faces[f].end(),
+                                   [&](Id p) { return run.count(p) > 0; }))
+              << "circle " << i << ", face " << f;
+      }
+    }
+  }
+}
+
 TEST(FeaturePaths, SameForAnyNumberOfThreads) {
   const PolyMesh mesh = blockWall(24);
   Drawing d;
   for (int i = 0; i < 12; ++i) d.line(Vec3(1.5, 1 + 1.7 * i, 24), Vec3(21.5, 2 + 1.63 * i, 24), 11);
   d.circle(Vec3(12, 12, 0), 7.7);
   const FeatureGraph graph = d.graph();
-  FeaturePaths first;
+  FeaturePaths first, firstAcross;
   for (int threads : {1, 2, 4}) {
     tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-    const FeaturePaths paths = trace(mesh, graph);
-    if (threads == 1) first = paths;
-    ASSERT_EQ(first.targets.size(), paths.targets.size());
-    for (std::size_t i = 0; i < paths.targets.size(); ++i) {
-      EXPECT_EQ(first.targets[i].node, paths.targets[i].node);
-      EXPECT_EQ(first.targets[i].target, paths.targets[i].target);
-    }
+    const FeaturePaths paths = trace(mesh, graph), across = traceAcross(mesh, graph, cutting()).paths;
+    if (threads == 1) first = paths, firstAcross = across;
+    expectSame(first, paths);
+    expectSame(firstAcross, across);
   }
   EXPECT_GT(first.targets.size(), 200u);
+  EXPECT_GT(firstAcross.cuts.size(), 10u);
 }
 
 }  // namespace

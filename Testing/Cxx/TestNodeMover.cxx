@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The mover of some points against that of all, sweeps in blocks, and its measures against those that judge
-// the mesh (thesis 4.4.1).
+// The mover of some points against that of all, sweeps in blocks, cuts and trials, and its measures against
+// those that judge the mesh (thesis 4.4.1).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,6 +11,7 @@
 #include "FoamQuality.h"
 #include "MoverMeasures.h"
 #include "NodeMover.h"
+#include "TestMeshes.h"
 #include "TestRandomDomains.h"
 
 namespace {
@@ -186,6 +187,240 @@ PolyMesh shaken(unsigned seed) {
   NodeMover mover(mesh, {});
   for (int k = 0; k < 3; ++k) sweep(mover, mesh, mover.blocks(allPoints(mesh)));
   return mesh;
+}
+
+/// Every diagonal of every `nth` wall face.
+template <class Body>
+void forEachDiagonal(const PolyMesh& mesh, Id nth, const Body& body) {
+  for (Id f = mesh.internalFaces(); f < mesh.faceCount(); f += nth) {
+    if (!mesh.isWallPatch(mesh.patch[f - mesh.internalFaces()])) continue;
+    const Span<Id> row = mesh.faces[f];
+    for (std::size_t i = 0; i + 2 < row.size(); ++i)
+      for (std::size_t j = i + 2; j < row.size() && j < i + row.size() - 1; ++j)
+        body(WallCut{f, row[i], row[j]});
+  }
+}
+
+PolyMesh withCut(PolyMesh mesh, const WallCut& cut) {
+  cutWallFaces(mesh, {cut});
+  return mesh;
+}
+
+/// whatIsWrong(), and the limits on OpenFOAM's measures that the mover keeps too.
+std::string whatFoamRefuses(const PolyMesh& mesh, const QualityLimits& limits) {
+  std::string wrong = whatIsWrong(mesh, limits);
+  const MeshMeasures m = measure(mesh);
+  const Csr<Id> faces = cellFaces(mesh);
+  const double minTet = limits.minTet * std::pow(mesh.finestSize, 3);
+  for (Id c = 0; c < mesh.cellCount; ++c) {
+    std::vector<Vec3> areas;
+    for (Id f : faces[c])
+      if (f < mesh.internalFaces()) areas.push_back(m.faces[f].normal);
+    if (!(cellDeterminant(areas.data(), areas.size()) >= limits.minDeterminant)) wrong += "A determinant. ";
+  }
+  for (Id f = 0; f < mesh.faceCount(); ++f) {
+    const CellMeasures& own = m.cells[mesh.owner[f]];
+    const CellMeasures* next = f < mesh.internalFaces() ? &m.cells[mesh.neighbour[f]] : nullptr;
+    if (!(faceTetVolume(mesh.points, mesh.faces[f], m.faces[f], own.foamCentre,
+                        next ? &next->foamCentre : nullptr, minTet) >= minTet))
+      wrong += "A decomposition tetrahedron. ";
+    if (next == nullptr) continue;
+    if (!(faceWeight(m.faces[f], own.foamCentre, next->foamCentre) >= limits.minFaceWeight))
+      wrong += "A weight. ";
+    if (!(volumeRatio(own.volume, next->volume) >= limits.minVolumeRatio)) wrong += "A volume ratio. ";
+  }
+  return wrong;
+}
+
+TEST(NodeMover, SaysOfACutWhetherTheMeshStaysValid) {
+  std::size_t holding = 0, breaking = 0;
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    PolyMesh mesh = seed % 2 == 0 ? layer(seed) : shaken(seed);
+    QualityLimits limits;
+    limits.minTet = 1e-5;  // more than the mover's own, so that both judge alike
+    if (seed % 4 > 1) limits.maxSkewBoundary = 1.2;
+    if (whatFoamRefuses(mesh, limits) != "") continue;
+    const NodeMover mover(mesh, limits, pointsNearWall(mesh, 0));
+    forEachDiagonal(mesh, 7, [&](const WallCut& cut) {
+      const bool holds = mover.cutHolds(cut);
+      const std::string wrong = whatFoamRefuses(withCut(mesh, cut), limits);
+      EXPECT_EQ(holds, wrong.empty()) << "domain " << seed << ", face " << cut.face << ": " << wrong;
+      ++(holds ? holding : breaking);
+    });
+  }
+  EXPECT_GT(holding, 200u);
+  EXPECT_GT(breaking, 50u);
+}
+
+TEST(NodeMover, CutsAddNoViolationWhereLimitsAreBrokenAlready) {
+  QualityLimits strict;
+  strict.maxAngleInternal = 35;
+  strict.maxSkewInternal = 0.5;
+  const auto violations = [&](const PolyMesh& mesh) {
+    return summarise(mesh, measure(mesh), strict).violations;
+  };
+  std::size_t holding = 0;
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    PolyMesh mesh = shaken(seed);
+    const Id before = violations(mesh);
+    ASSERT_GT(before, 0);
+    const NodeMover mover(mesh, strict, pointsNearWall(mesh, 0));
+    forEachDiagonal(mesh, 1, [&](const WallCut& cut) {
+      if (!mover.cutHolds(cut)) return;
+      ++holding;
+      EXPECT_LE(violations(withCut(mesh, cut)), before) << "domain " << seed << ", face " << cut.face;
+    });
+  }
+  EXPECT_GT(holding, 50u);
+}
+
+TEST(NodeMover, SaysNoOfCutsAwayFromItsPoints) {
+  PolyMesh mesh = layer(5);
+  const Id away = mesh.faces[mesh.faceCount() - 1][0];
+  const NodeMover mover(mesh, {}, std::vector<Id>{away});
+  std::size_t near = 0;
+  forEachDiagonal(mesh, 1, [&](const WallCut& cut) {
+    const Span<Id> cells = mover.cellsOf(away);
+    if (std::find(cells.begin(), cells.end(), mesh.owner[cut.face]) != cells.end())
+      ++near;
+    else
+      EXPECT_FALSE(mover.cutHolds(cut));
+  });
+  EXPECT_GT(near, 0u);
+}
+
+/// Forces a point somewhere and mends around it as well as a few random steps can.
+void tryForced(NodeMover& mover, const PolyMesh& mesh, Id p, unsigned round) {
+  std::mt19937_64 g(31 * static_cast<unsigned>(p) + round);
+  const double h = mesh.finestSize;
+  const auto step = [&](double far) { return Vec3(far * h * randomPoint(g, -1, 1)); };
+  const Id base = mesh.base[p];
+  NodeMover::Trial trial(mover);
+  if (base == kNone)
+    trial.force({p}, {mesh.points[p] + step(0.4)});
+  else
+    trial.force({p, base}, {mesh.points[p] + step(0.4), mesh.points[base] + step(0.2)});
+  for (int k = 0; k < 6; ++k) {
+    if (base != kNone) mover.improve(base, mesh.points[base] + step(0.2));
+    mover.improve(p, mesh.points[p] + step(0.1));
+  }
+  trial.settle();
+}
+
+std::vector<double> badnessOfAll(const NodeMover& mover, const PolyMesh& mesh) {
+  std::vector<double> all;
+  for (std::size_t p = 0; p < mesh.points.size(); ++p) all.push_back(mover.badness(static_cast<Id>(p)));
+  return all;
+}
+
+TEST(NodeMover, ATrialThatIsNotSettledLeavesNoTrace) {
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    PolyMesh mesh = layer(seed);
+    NodeMover mover(mesh, {}), fresh(mesh, {});
+    const std::vector<Vec3> before = mesh.points;
+    std::mt19937_64 g(seed);
+    for (int k = 0; k < 30; ++k) {
+      const Id p = static_cast<Id>(g() % mesh.points.size());
+      {
+        NodeMover::Trial trial(mover);
+        trial.force({p}, {mesh.points[p] + mesh.finestSize * randomPoint(g, -1, 1)});
+        const auto shift = [&] { return Vec3(0.2 * mesh.finestSize * randomPoint(g, -1, 1)); };
+        for (Id c : mover.cellsOf(p))
+          for (Id q : mover.pointsOf(c)) mover.improve(q, mesh.points[q] + shift());
+        mover.drift(p, before[p]);
+        trial.force({p}, {before[p] + 20 * mesh.finestSize * Vec3::Ones()});
+        if (mesh.fixed[p] != 7) {
+          EXPECT_TRUE(mesh.points != before);
+        }
+        if (k % 2 == 0 && mesh.fixed[p] != 7) {
+          EXPECT_FALSE(trial.settle()) << "point " << p;
+        }
+      }
+      ASSERT_TRUE(mesh.points == before) << "domain " << seed << ", point " << p;
+    }
+    EXPECT_EQ(badnessOfAll(mover, mesh), badnessOfAll(fresh, mesh));
+    for (Id f = 0; f < mesh.faceCount(); ++f) {
+      EXPECT_EQ(mover.faceCentre(f), fresh.faceCentre(f));
+      EXPECT_EQ(mover.faceNormal(f), fresh.faceNormal(f));
+    }
+    for (Id c = 0; c < mesh.cellCount; ++c) EXPECT_EQ(mover.cellCentre(c), fresh.cellCentre(c));
+  }
+}
+
+TEST(NodeMover, ASettledTrialLeavesAValidMeshAndCurrentMeasures) {
+  std::size_t settled = 0, undone = 0;
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    PolyMesh mesh = layer(seed);
+    NodeMover mover(mesh, {});
+    for (Id p = 0; p < static_cast<Id>(mesh.points.size()); ++p) {
+      const Vec3 before = mesh.points[p];
+      tryForced(mover, mesh, p, 1);
+      ++(mesh.points[p] == before ? undone : settled);
+    }
+    EXPECT_EQ(whatIsWrong(mesh), "") << "domain " << seed;
+    EXPECT_EQ(badnessOfAll(mover, mesh), badnessOfAll(NodeMover(mesh, {}), mesh));
+  }
+  EXPECT_GT(settled, 100u);
+  EXPECT_GT(undone, 100u);
+}
+
+TEST(NodeMover, ATrialMayPassThroughWhatIsNotValid) {
+  VoxelOptions o;
+  o.size = {4, 4, 2};
+  PolyMesh mesh = layeredVoxels(o);
+  NodeMover mover(mesh, {});
+  const Id wall = static_cast<Id>(
+      std::find_if(mesh.base.begin(), mesh.base.end(), [](Id b) { return b != kNone; }) - mesh.base.begin());
+  const Vec3 home = mesh.points[wall], inside = 2.5 * mesh.points[mesh.base[wall]] - 1.5 * home;
+  ASSERT_NE(mover.tryMove(wall, inside), Refusal::None);
+  NodeMover::Trial trial(mover);
+  trial.force({wall}, {inside});
+  EXPECT_EQ(mesh.points[wall], inside);
+  EXPECT_GT(mover.badness(wall), 1);
+  EXPECT_FALSE(trial.settle());
+  EXPECT_TRUE(mover.improve(wall, home)) << "the way back is better";
+  EXPECT_TRUE(trial.settle());
+  EXPECT_EQ(whatIsWrong(mesh), "");
+}
+
+TEST(NodeMover, ForcedMovesOfOtherPointsDoNothing) {
+  PolyMesh mesh = layer(1);
+  const std::vector<Vec3> before = mesh.points;
+  NodeMover mover(mesh, {}, std::vector<Id>{0});
+  const Vec3 far = mesh.finestSize * Vec3(3, 2, 1);
+  {
+    NodeMover::Trial trial(mover);
+    for (Id p = 1; p < static_cast<Id>(mesh.points.size()); ++p) {
+      trial.force({p}, {mesh.points[p] + far});
+      trial.force({0, p}, {mesh.points[0] + far, mesh.points[p] + far});
+      ASSERT_TRUE(mesh.points == before);
+    }
+    EXPECT_TRUE(trial.settle()) << "nothing has happened";
+  }
+  EXPECT_TRUE(mesh.points == before);
+}
+
+TEST(NodeMover, TrialsGiveTheSameBitsOnAnyNumberOfThreads) {
+  std::size_t moved = 0;
+  for (unsigned seed = 0; seed < 8; ++seed) {
+    std::vector<std::vector<Vec3>> results;
+    for (int threads : {1, 2, 4}) {
+      PolyMesh mesh = layer(seed);
+      const std::vector<Vec3> before = mesh.points;
+      withThreads(threads, [&] {
+        NodeMover mover(mesh, {});
+        const auto groups = mover.colour(allPoints(mesh));
+        for (unsigned round = 0; round < 2; ++round)
+          mover.forEach(groups, [&](Id p) { tryForced(mover, mesh, p, round); });
+      });
+      EXPECT_EQ(whatIsWrong(mesh), "") << "domain " << seed;
+      for (std::size_t p = 0; p < before.size(); ++p) moved += mesh.points[p] != before[p];
+      results.push_back(mesh.points);
+    }
+    EXPECT_TRUE(results[0] == results[1]) << "domain " << seed;
+    EXPECT_TRUE(results[0] == results[2]) << "domain " << seed;
+  }
+  EXPECT_GT(moved, 300u);
 }
 
 TEST(MoverMeasures, EqualThoseOfTheWholeMesh) {

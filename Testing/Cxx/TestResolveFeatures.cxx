@@ -4,8 +4,12 @@
 #include <tbb/global_control.h>
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 #include <memory>
+#include <random>
+#include <set>
+#include <string>
 
 #include "DummyLayer.h"
 #include "OctreeDecompose.h"
@@ -99,6 +103,7 @@ PolyMesh projected(const SurfaceModel& model, DistanceField& field, double size)
   Monitor monitor;
   OctreeDecomposeOptions octree;
   octree.featureSize = size;
+  octree.featureDepth = FeatureDepth::Full;
   PolyMesh mesh = dummyLayer(paintFront(decompose(model, octree, monitor), model, {}, monitor), {}, monitor);
   project(mesh, field, {}, monitor);
   return mesh;
@@ -212,6 +217,152 @@ TEST(ResolveFeatures, SameForAnyNumberOfThreads) {
     const std::uint64_t sum = checksum(resolve(soup, 0.25).mesh);
     if (threads == 1) first = sum;
     EXPECT_EQ(sum, first);
+  }
+}
+
+// ------------------------------------------------------------------------------------ shapes in any position
+
+/// A uniformly random rotation.
+Eigen::Matrix3d rotation(unsigned seed) {
+  std::mt19937_64 g(seed);
+  std::normal_distribution<double> normal;
+  Eigen::Quaterniond q;
+  for (double* x : {&q.w(), &q.x(), &q.y(), &q.z()}) *x = normal(g);
+  return q.normalized().toRotationMatrix();
+}
+
+/// A closed prism over a polygon in the plane, from z = 0 to 1: a patch for its sides, one for each end. The
+/// ends are fans about the first point.
+Soup prismOver(const std::vector<std::array<double, 2>>& polygon) {
+  Soup s;
+  s.names = {"sides", "bottom", "top"};
+  const std::size_t n = polygon.size();
+  const auto at = [&](std::size_t i, double z) { return Vec3(polygon[i % n][0], polygon[i % n][1], z); };
+  for (std::size_t i = 0; i < n; ++i) s.quad(at(i, 0), at(i + 1, 0), at(i + 1, 1), at(i, 1), 0);
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    s.add(at(0, 0), at(i + 1, 0), at(i, 0), 1);
+    s.add(at(0, 1), at(i, 1), at(i + 1, 1), 2);
+  }
+  return s;
+}
+
+/// Two thirds of a cube missing: a concave edge, and corners where it ends.
+Soup block() { return prismOver({{0.5, 0.4}, {0.5, 1}, {0, 1}, {0, 0}, {1, 0}, {1, 0.4}}); }
+
+/// Radius 1, height 2: a circle without corners. The apex is the end of no sharp edge.
+Soup cone(int columns) {
+  Soup s;
+  s.names = {"side", "bottom"};
+  const auto at = [&](int i) {
+    const double t = 2 * M_PI * (i % columns) / columns;
+    return Vec3(std::cos(t), std::sin(t), 0);
+  };
+  for (int i = 0; i < columns; ++i) {
+    s.add(Vec3(0, 0, 2), at(i), at(i + 1), 0);
+    s.add(Vec3(0, 0, 0), at(i + 1), at(i), 1);
+  }
+  return s;
+}
+
+/// The part of a closed convex soup where x[axis] is below a value, closed by a patch of its own. Triangles
+/// that share an edge are cut at the same point of it, to the bit.
+Soup below(const Soup& soup, int axis, double value, const std::string& name) {
+  Soup out;
+  out.names = soup.names;
+  out.names.push_back(name);
+  std::vector<std::array<Vec3, 2>> rim;
+  const auto isIn = [&](const Vec3& p) { return p[axis] < value; };
+  const auto cut = [&](Vec3 a, Vec3 b) {
+    if (isIn(b)) std::swap(a, b);
+    Vec3 p = a + (value - a[axis]) / (b[axis] - a[axis]) * (b - a);
+    p[axis] = value;
+    return p;
+  };
+  for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
+    std::vector<Vec3> ring;
+    std::array<Vec3, 2> segment;
+    bool crosses = false;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 &p = soup.points[soup.triangles[t][k]], &q = soup.points[soup.triangles[t][(k + 1) % 3]];
+      if (isIn(p)) ring.push_back(p);
+      if (isIn(p) == isIn(q)) continue;
+      ring.push_back(cut(p, q));
+      segment[isIn(p) ? 1 : 0] = ring.back();
+      crosses = true;
+    }
+    for (std::size_t k = 1; k + 1 < ring.size(); ++k) out.add(ring[0], ring[k], ring[k + 1], soup.patches[t]);
+    if (crosses) rim.push_back(segment);
+  }
+  Vec3 middle = Vec3::Zero();
+  for (const auto& segment : rim) middle += segment[0] / static_cast<double>(rim.size());
+  middle[axis] = value;
+  for (const auto& [from, to] : rim) out.add(middle, from, to, static_cast<Id>(out.names.size()) - 1);
+  return out;
+}
+
+/// A corner inside the sphere, three on it, and arcs between these.
+Soup cutSphere() { return below(below(below(sphere(), 0, 0.3, "x"), 1, 0.2, "y"), 2, 0.1, "z"); }
+
+std::vector<double> patchAreas(const Soup& shape) {
+  std::vector<double> areas(shape.names.size(), 0.0);
+  for (std::size_t t = 0; t < shape.triangles.size(); ++t) {
+    const auto& [a, b, c] = shape.triangles[t];
+    const Vec3 u = shape.points[b] - shape.points[a], v = shape.points[c] - shape.points[a];
+    areas[shape.patches[t]] += 0.5 * u.cross(v).norm();
+  }
+  return areas;
+}
+
+std::vector<double> patchAreas(const PolyMesh& mesh) {
+  std::vector<double> areas(mesh.patchNames.size(), 0.0);
+  for (Id i = 0; i < mesh.boundaryFaces(); ++i)
+    areas[mesh.patch[i]] +=
+        measureFace(mesh.points, mesh.faces[mesh.internalFaces() + i], true).normal.norm();
+  return areas;
+}
+
+/// Three rotations: on the average at least that share of the features' length, and 0.97 of it each time; one
+/// corner may be missed in all of them. The whole of each patch is where it was.
+void expectResolved(const Soup& shape, double size, Id corners, double share = 0.99) {
+  constexpr int kRotations = 3;
+  const std::vector<double> before = patchAreas(shape);
+  double shares = 0;
+  Id missed = 0;
+  for (unsigned seed = 1; seed <= kRotations; ++seed) {
+    SCOPED_TRACE("rotation " + std::to_string(seed));
+    Soup soup = shape;
+    soup.turn(rotation(seed));
+    const Resolved r = resolve(soup, size);
+    expectValid(r.mesh);
+    EXPECT_EQ(r.report.corners, corners);
+    missed += corners - r.report.resolvedCorners;
+    const double now = r.report.resolvedLength / r.report.featureLength;
+    EXPECT_GE(now, 0.97);
+    shares += now;
+    const std::vector<double> after = patchAreas(r.mesh);
+    for (std::size_t p = 0; p < after.size(); ++p)
+      EXPECT_NEAR(after[p] / before[p], 1, 0.01) << soup.names[p];
+  }
+  EXPECT_GE(shares / kRotations, share);
+  EXPECT_LE(missed, 1);
+}
+
+TEST(ResolveFeatures, RotatedCube) { expectResolved(cube(), 2. / 25, 8); }
+TEST(ResolveFeatures, RotatedBlock) { expectResolved(block(), 1. / 25, 12); }
+TEST(ResolveFeatures, RotatedCylinder) { expectResolved(cylinder(64), 2. / 25, 0); }
+TEST(ResolveFeatures, RotatedCone) { expectResolved(cone(64), 2. / 25, 0, 0.98); }
+TEST(ResolveFeatures, RotatedCutSphere) { expectResolved(cutSphere(), 2. / 25, 4); }
+
+TEST(ResolveFeatures, RotatedShapesGiveTheSameBitsForAnyNumberOfThreads) {
+  for (const Soup& shape : {block(), cone(48), cutSphere()}) {
+    Soup soup = shape;
+    soup.turn(rotation(7));
+    std::set<std::uint64_t> sums;
+    for (int threads : {1, 2, 4}) {
+      tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+      sums.insert(checksum(resolve(soup, 0.1).mesh));
+    }
+    EXPECT_EQ(sums.size(), 1u);
   }
 }
 
