@@ -99,6 +99,8 @@ def search(surface, options):
     for point in options.outside:
         holes.AddOutsidePoint(*point)
     holes.Update()
+    if holes.GetOutputDataObject(0).GetFieldData().GetAbstractArray("PatchNames") is None:
+        raise SystemExit("Close Holes gave no result; its error is above.")
     return holes
 
 
