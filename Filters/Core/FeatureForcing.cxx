@@ -143,12 +143,12 @@ double FeatureSnapper::qualityAt(const std::vector<Vec3>& at, const std::vector<
   return m.warpage() > mover_.limits().maxWarpage ? 0.0 : m.eta;
 }
 
-/// The cut of a face around the node that would keep it from folding or flattening with the node at its
-/// target; of the worst such face.
+/// The cut that would keep a face around the node from folding or flattening with the node at its target;
+/// none when other faces are in the way as well.
 WallCut FeatureSnapper::cutFor(Id row) const {
   const double enough = mover_.limits().minEtaBoundary;
   WallCut best;
-  double worst = enough;
+  int inTheWay = 0;
   std::vector<Vec3> at;
   std::vector<Id> ids, first, second;
   for (Id f : wall_.faces[row]) {
@@ -161,7 +161,8 @@ WallCut FeatureSnapper::cutFor(Id row) const {
       at.push_back(q == wall_.nodes[row] ? target_[row] : mesh_.points[q]);
     }
     const double now = qualityAt(at, ids);
-    if (n == 3 || now >= worst) continue;
+    if (now >= enough) continue;
+    if (n == 3 || ++inTheWay > 1) return {};  // one cut would not do
     double most = enough;
     for (Id i = 0; i + 2 < n; ++i)
       for (Id j = i + 2; j < n && j < i + n - 1; ++j) {
@@ -170,7 +171,6 @@ WallCut FeatureSnapper::cutFor(Id row) const {
         const WallCut cut{f, ring[i], ring[j]};
         if (quality < most || !mover_.cutHolds(cut)) continue;
         most = quality;
-        worst = now;
         best = cut;
       }
   }
@@ -180,7 +180,8 @@ WallCut FeatureSnapper::cutFor(Id row) const {
 std::vector<WallCut> FeatureSnapper::helpfulCuts() const {
   std::vector<WallCut> cuts;
   for (Id row : missed())
-    if (const WallCut cut = cutFor(row); cut.face != kNone) cuts.push_back(cut);
+    if (staysNear(row, target_[row], kSnapTolerance * wall_.scale[row]))
+      if (const WallCut cut = cutFor(row); cut.face != kNone) cuts.push_back(cut);
   return cuts;
 }
 
