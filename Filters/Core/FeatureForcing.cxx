@@ -11,8 +11,7 @@ namespace pm {
 namespace {
 
 constexpr int kMendSweeps = 6;
-// In length scales: steps that mend a wall node, and others.
-constexpr double kWallSteps[] = {0.3, 0.12}, kInnerSteps[] = {0.3, 0.12};
+constexpr double kMendSteps[] = {0.3, 0.12};  // length scales
 
 Span<Id> spanOf(const std::vector<Id>& ids) { return {ids.data(), ids.data() + ids.size()}; }
 
@@ -104,7 +103,7 @@ void FeatureSnapper::mendInner(Id point, const Vec3& ideal, double scale) {
   };
   attempt(ideal);
   attempt(0.5 * (ideal + mesh_.points[point]));
-  for (double step : kInnerSteps)
+  for (double step : kMendSteps)
     for (int k = 0; k < 6; ++k) {
       Vec3 to = mesh_.points[point];
       to[k / 2] += (k % 2 ? step : -step) * scale;
@@ -120,7 +119,7 @@ void FeatureSnapper::mendWallNode(Id row) {
   if (bad <= 1 || role_[row] == Role::Corner || !(n.norm() > 0)) return;
   const Vec3 u = n.unitOrthogonal(), v = n.cross(u);
   const bool onCurve = role_[row] == Role::Curve && reached(row);
-  for (double step : kWallSteps)
+  for (double step : kMendSteps)
     for (int k = 0; k < 6 && bad > 1; ++k) {
       const double angle = k * 3.14159265358979323846 / 3;
       Vec3 to = mesh_.points[p] + step * wall_.scale[row] * (std::cos(angle) * u + std::sin(angle) * v);

@@ -13,6 +13,7 @@
 namespace pm {
 namespace {
 
+using testing::cubeInBox;
 using testing::layeredPolygons;
 using testing::layeredVoxels;
 using testing::VoxelOptions;
@@ -21,15 +22,6 @@ VoxelOptions blockOptions() {
   VoxelOptions o;
   o.size = {4, 3, 2};
   o.wallSide = {false, false, false, false, false, true};
-  return o;
-}
-
-/// A solid unit cube in the middle of a box: every wall edge is convex.
-VoxelOptions cubeInBox() {
-  VoxelOptions o;
-  o.size = {5, 5, 5};
-  o.wallSide = {false, false, false, false, false, false};
-  o.occupied = [](int i, int j, int k) { return !(i == 2 && j == 2 && k == 2); };
   return o;
 }
 

@@ -22,15 +22,6 @@ VoxelOptions floorOf(int x, int y) {
   return o;
 }
 
-/// A solid unit cube in the middle of a box: every wall edge is convex.
-VoxelOptions cubeInBox() {
-  VoxelOptions o;
-  o.size = {5, 5, 5};
-  o.wallSide = {false, false, false, false, false, false};
-  o.occupied = [](int i, int j, int k) { return !(i == 2 && j == 2 && k == 2); };
-  return o;
-}
-
 /// An L-shaped room between two domain sides: convex, concave and flat wall edges.
 VoxelOptions elbow(int size) {
   VoxelOptions o;

@@ -34,6 +34,15 @@ struct VoxelOptions {
 };
 PolyMesh layeredVoxels(const VoxelOptions& options);
 
+/// A solid unit cube in the middle of a box: every wall edge is convex.
+inline VoxelOptions cubeInBox() {
+  VoxelOptions o;
+  o.size = {5, 5, 5};
+  o.wallSide = {false, false, false, false, false, false};
+  o.occupied = [](int i, int j, int k) { return !(i == 2 && j == 2 && k == 2); };
+  return o;
+}
+
 /// A flat sheet of polygons, extruded: a core cell from z = -1 to 0 and a prism from 0 to `height` for each;
 /// wall above, domain sides elsewhere.
 PolyMesh layeredPolygons(const std::vector<std::array<double, 2>>& points, const std::vector<Face>& polygons,
