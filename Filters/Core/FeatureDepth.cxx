@@ -2,12 +2,17 @@
 #include "FeatureDepth.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "TriangleBox.h"
 
 namespace pm {
 namespace {
+
+// Directions on the unit circle that differ by less are one: overlapping sheets, the common edge of two
+// triangles.
+constexpr double kSame = 0.05;
 
 constexpr double kDegree = 3.14159265358979323846 / 180;
 
@@ -46,11 +51,42 @@ bool clip(const Box& box, const FeatureSegment& s, Vec3& a, Vec3& b) {
   return t0 <= t1;
 }
 
+/// Adds the directions from the centre in which the triangle crosses the circle, each once for all triangles.
+void addCrossings(const SurfaceModel& model, Id triangle, const Vec3& centre, const Vec3& axis, double radius,
+                  std::vector<Vec3>& directions) {
+  std::array<Vec3, 3> p;
+  std::array<double, 3> height;
+  for (int k = 0; k < 3; ++k) {
+    p[k] = model.corner(triangle, k) - centre;
+    height[k] = p[k].dot(axis);
+  }
+  std::array<Vec3, 2> ends;  // of the triangle's cut with the circle's plane
+  int count = 0;
+  for (int k = 0; k < 3; ++k) {
+    const int l = (k + 1) % 3;
+    if ((height[k] < 0) == (height[l] < 0)) continue;
+    const Vec3 at = p[k] + height[k] / (height[k] - height[l]) * (p[l] - p[k]);
+    if (count < 2) ends[count++] = at - at.dot(axis) * axis;
+  }
+  if (count < 2) return;
+  const Vec3 d = ends[1] - ends[0];
+  const double half = ends[0].dot(d) / d.squaredNorm();
+  const double rest = half * half - (ends[0].squaredNorm() - radius * radius) / d.squaredNorm();
+  if (!(rest >= 0)) return;
+  for (double root : {-std::sqrt(rest), std::sqrt(rest)}) {
+    const double t = root - half;
+    if (t < 0 || t > 1) continue;
+    const Vec3 direction = (ends[0] + t * d) / radius;
+    const auto same = [&](const Vec3& v) { return (v - direction).squaredNorm() < kSame * kSame; };
+    if (std::none_of(directions.begin(), directions.end(), same)) directions.push_back(direction);
+  }
+}
+
 }  // namespace
 
 FeatureDemand::FeatureDemand(const SurfaceModel& model, const OctreeDecomposeOptions& options, double finest,
                              Monitor& monitor)
-    : options_(options), finest_(finest), graph_(detect(model, options, finest, monitor)) {
+    : model_(model), options_(options), finest_(finest), graph_(detect(model, options, finest, monitor)) {
   constexpr std::uint8_t kSwitched = kInterfaceEdge | kOpenEdge | kNonManifoldEdge;
   if (options.refineSharp) kinds_ = static_cast<std::uint8_t>(~kSwitched);
   if (options.refineInterfaces) kinds_ |= kInterfaceEdge;
@@ -153,7 +189,8 @@ FeatureDemand::Demand FeatureDemand::asNeeded(const Box& leaf) const {
     const Vec3 &a = graph_.segments()[run.segments.front()].a, &b = graph_.segments()[run.segments.back()].b;
     const bool joined =
         corners.empty() || a == graph_.corners()[corners[0]] || b == graph_.corners()[corners[0]];
-    split = split || !joined || turns(run) || sags(cell, run);
+    split = split || !joined || turns(run) || sags(cell, run) ||
+            blunts(run.inside ? cell : around, run, leaf.size().maxCoeff());
   }
   if (inside == 0 && !corner) return {split ? Answer::Near : Answer::None, 1};
   return {split ? Answer::Split : Answer::Keep, corner ? std::max(inside, 1) : inside + 1};
@@ -192,6 +229,25 @@ bool FeatureDemand::sags(const Box& cell, const Run& run) const {
     const Vec3 off = p - start;
     return (off - off.dot(chord) * chord).norm() > kMostSag * finest_;
   });
+}
+
+/// Where the surface crosses a circle around a point of the run in the box, square to the curve and a cell's
+/// edge wide, are the far sides of the faces beside the edge. An edge between two surfaces is crossed twice.
+bool FeatureDemand::blunts(const Box& part, const Run& run, double radius) const {
+  const std::vector<FeatureSegment>& all = graph_.segments();
+  std::vector<Id> within;
+  for (Id s : run.segments)
+    if (touches(part, all[s].a, all[s].b)) within.push_back(s);
+  if (within.empty()) return false;
+  const FeatureSegment& segment = all[within[within.size() / 2]];
+  Vec3 a, b;
+  if ((segment.kind & kSharpEdge) == 0 || !clip(part, segment, a, b)) return false;
+  const Vec3 middle = 0.5 * (a + b), along = (segment.b - segment.a).stableNormalized();
+  Box reach;
+  reach.add(middle);
+  std::vector<Vec3> met;
+  for (Id t : model_.trianglesNear(grown(reach, radius))) addCrossings(model_, t, middle, along, radius, met);
+  return met.size() == 2 && met[0].dot(met[1]) < -std::cos(kLeastShare * options_.sharpAngle * kDegree);
 }
 
 }  // namespace pm

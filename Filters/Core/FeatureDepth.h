@@ -4,7 +4,8 @@
 // Full depth splits every such cell to the finest level, as the thesis does. As needed, a cell is split only
 // while it and its neighbours hold features that one cell cannot tell apart: two corners, two curves that do
 // not meet in a corner there, a curve that turns by more than kMostTurn, or one that leaves its chord over
-// the cell by more than kMostSag of the finest cell. What is left are cells with one straight piece of a
+// the cell by more than kMostSag of the finest cell, or one beside which the surfaces bend so much that the
+// sharp edge is none any more at the size of the cell. What is left are cells with one straight piece of a
 // curve, or one corner and the curves from it. Cells within featureBuffer finest cells of a feature that asks
 // follow it, as at full depth.
 #pragma once
@@ -21,7 +22,9 @@ class FeatureDemand {
   static constexpr double kMostTurn = 30;      ///< degrees, over a cell and its neighbours
   static constexpr double kMostSag = 1. / 20;  ///< of the finest cell's edge
 
-  /// Finds the model's critical edges; keeps a reference to the options.
+  static constexpr double kLeastShare = 2. / 3;  ///< of the sharp angle, over a cell to either side
+
+  /// Finds the model's critical edges; keeps references to the model and the options.
   FeatureDemand(const SurfaceModel& model, const OctreeDecomposeOptions& options, double finest,
                 Monitor& monitor);
 
@@ -49,7 +52,9 @@ class FeatureDemand {
   bool isNear(const Box& cell, const std::vector<Run>& runs) const;
   bool turns(const Run& run) const;
   bool sags(const Box& cell, const Run& run) const;
+  bool blunts(const Box& part, const Run& run, double radius) const;
 
+  const SurfaceModel& model_;
   const OctreeDecomposeOptions& options_;
   const double finest_;
   FeatureGraph graph_;

@@ -399,6 +399,30 @@ TEST(RefinementCriteria, FeatureDepthAsNeeded) {
   EXPECT_GT(std::count(rim.refinedBy.begin(), rim.refinedBy.end(), buffer), 0) << "beside the rim as on it";
 }
 
+// Two surfaces meet in a ridge at 35 degrees. Where they flatten out beside it, large cells would make it
+// blunt; where they are plane or grow steeper, no cell does.
+TEST(RefinementCriteria, AsNeededKeepsShallowEdgesBetweenCurvedSurfacesSharp) {
+  OctreeDecomposeOptions o = bare(0.02);
+  o.refineEdges = true;
+  o.featureDepth = FeatureDepth::AsNeeded;
+  o.refineOpen = OpenEdgeRefinement::None;
+  const double slope = std::tan(17.5 / 180 * 3.14159265358979323846);
+  const auto ridge = [&](const std::function<double(double)>& fall) {
+    Soup s;
+    s.addGrid(Vec3(-1, 0, 0), Vec3(2, 0, 0), Vec3(0, 4, 0), 64);
+    return s.mapped([&](const Vec3& p) { return Vec3(p[0], p[1], -slope * fall(std::abs(p[0]))); }).model();
+  };
+  const Vec3 onRidge(1e-3, 2.01, -1e-3);
+  const auto edgeFor = [&](const SurfaceModel& model) { return edgeAt(run(model, o), onRidge); };
+  const double plane = edgeFor(*ridge([](double x) { return x; }));
+  const double steeper = edgeFor(*ridge([](double x) { return x + 0.5 * x * x; }));
+  const double flatter = edgeFor(*ridge([](double x) { return 0.1 * (1 - std::exp(-x / 0.1)); }));
+  EXPECT_GT(plane, 0.3);
+  EXPECT_EQ(steeper, plane);
+  EXPECT_LT(flatter, 0.14);  // 20 of 35 degrees are left over a width of 0.13
+  EXPECT_GT(flatter, 0.03);
+}
+
 TEST(RefinementCriteria, RefusesSizesThatMakeNoSense) {
   const auto model = cube().model();
   const auto refused = [&](const std::function<void(OctreeDecomposeOptions&)>& set) {
