@@ -190,7 +190,7 @@ FeatureDemand::Demand FeatureDemand::asNeeded(const Box& leaf) const {
     const bool joined =
         corners.empty() || a == graph_.corners()[corners[0]] || b == graph_.corners()[corners[0]];
     split = split || !joined || turns(run) || sags(cell, run) ||
-            blunts(run.inside ? cell : around, run, leaf.size().maxCoeff());
+            looksBluntOrAcute(run.inside ? cell : around, run, leaf.size().maxCoeff());
   }
   if (inside == 0 && !corner) return {split ? Answer::Near : Answer::None, 1};
   return {split ? Answer::Split : Answer::Keep, corner ? std::max(inside, 1) : inside + 1};
@@ -233,7 +233,7 @@ bool FeatureDemand::sags(const Box& cell, const Run& run) const {
 
 /// Where the surface crosses a circle around a point of the run in the box, square to the curve and a cell's
 /// edge wide, are the far sides of the faces beside the edge. An edge between two surfaces is crossed twice.
-bool FeatureDemand::blunts(const Box& part, const Run& run, double radius) const {
+bool FeatureDemand::looksBluntOrAcute(const Box& part, const Run& run, double radius) const {
   const std::vector<FeatureSegment>& all = graph_.segments();
   std::vector<Id> within;
   for (Id s : run.segments)
@@ -247,7 +247,10 @@ bool FeatureDemand::blunts(const Box& part, const Run& run, double radius) const
   reach.add(middle);
   std::vector<Vec3> met;
   for (Id t : model_.trianglesNear(grown(reach, radius))) addCrossings(model_, t, middle, along, radius, met);
-  return met.size() == 2 && met[0].dot(met[1]) < -std::cos(kLeastShare * options_.sharpAngle * kDegree);
+  if (met.size() != 2) return false;
+  const double cosine = met[0].dot(met[1]);  // of the angle between the sides
+  return cosine < -std::cos(kLeastShare * options_.sharpAngle * kDegree) ||
+         (options_.separate && cosine > std::cos(options_.closeAngle * kDegree));
 }
 
 }  // namespace pm

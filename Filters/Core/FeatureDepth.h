@@ -5,9 +5,9 @@
 // while it and its neighbours hold features that one cell cannot tell apart: two corners, two curves that do
 // not meet in a corner there, a curve that turns by more than kMostTurn, or one that leaves its chord over
 // the cell by more than kMostSag of the finest cell, or one beside which the surfaces bend so much that the
-// sharp edge is none any more at the size of the cell. What is left are cells with one straight piece of a
-// curve, or one corner and the curves from it. Cells within featureBuffer finest cells of a feature that asks
-// follow it, as at full depth.
+// sharp edge is none any more at the size of the cell, or one whose sides face each other by closeAngle. What
+// is left are cells with one straight piece of a curve, or one corner and the curves from it. Cells within
+// featureBuffer finest cells of a feature that asks follow it, as at full depth.
 #pragma once
 
 #include <vector>
@@ -52,7 +52,7 @@ class FeatureDemand {
   bool isNear(const Box& cell, const std::vector<Run>& runs) const;
   bool turns(const Run& run) const;
   bool sags(const Box& cell, const Run& run) const;
-  bool blunts(const Box& part, const Run& run, double radius) const;
+  bool looksBluntOrAcute(const Box& part, const Run& run, double radius) const;
 
   const SurfaceModel& model_;
   const OctreeDecomposeOptions& options_;

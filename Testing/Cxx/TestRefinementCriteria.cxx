@@ -10,37 +10,12 @@
 
 #include "OctreeDecompose.h"
 #include "RefineReason.h"
-#include "TestSurfaces.h"
+#include "TestOctrees.h"
 
 namespace {
 
 using namespace pm;
 using namespace pm::testing;
-
-/// Nothing asks but what a test turns on.
-OctreeDecomposeOptions bare(double featureSize) {
-  OctreeDecomposeOptions o;
-  o.featureSize = featureSize;
-  o.normalAngle = 0;
-  o.separate = o.refineEdges = false;
-  o.bufferCells = 0;
-  o.featureDepth = FeatureDepth::Full;
-  return o;
-}
-
-Octree run(const SurfaceModel& model, const OctreeDecomposeOptions& o) {
-  Monitor monitor;
-  Octree tree = decompose(model, o, monitor);
-  EXPECT_TRUE(isComplete(tree));
-  EXPECT_TRUE(isBalanced(tree));
-  return tree;
-}
-
-double edgeAt(const Octree& tree, const Vec3& p) { return tree.brick.edge(tree.levels[tree.locate(p)]); }
-
-bool finestAt(const Octree& tree, const Vec3& p) {
-  return tree.levels[tree.locate(p)] == tree.brick.maxLevel;
-}
 
 RefineReason reasonAt(const Octree& tree, const Vec3& p) {
   return static_cast<RefineReason>(tree.refinedBy[tree.locate(p)]);
@@ -371,56 +346,6 @@ TEST(RefinementCriteria, CurvatureGivesCellsPerCircle) {
   EXPECT_EQ(tree.levels[tree.locate(Vec3(0.9, 0.9, -1.499))], 0) << "a plane has no curvature";
   o.cellsPerCircle = 0;
   EXPECT_TRUE(onlyRoots(run(*model, o)));
-}
-
-TEST(RefinementCriteria, FeatureDepthAsNeeded) {
-  const auto model = cube().model();
-  OctreeDecomposeOptions o;
-  o.featureSize = 0.02;
-  const Octree needed = run(*model, o);
-  o.featureDepth = FeatureDepth::Full;
-  const Octree full = run(*model, o);
-  EXPECT_LT(10 * needed.size(), full.size());
-  o.featureDepth = FeatureDepth::AsNeeded;
-  // A bar of 0.1 by 0.1: its long edges are told apart, with a free cell between them, and no further.
-  const auto bar = cube().mapped([](const Vec3& p) { return Vec3(p[0], 0.1 * p[1], 0.1 * p[2]); }).model();
-  const Octree tree = run(*bar, o);
-  const Vec3 onEdge(0.51, 1e-3, 1e-3);
-  EXPECT_LE(edgeAt(tree, onEdge), 0.1 / 2);
-  EXPECT_FALSE(tree.cut[tree.locate(Vec3(0.51, 0.05, 0.05))]);
-  // The rim of a cylinder bends: as fine as the chord of a cell needs.
-  const auto round = cylinder(200).model();
-  o.featureSize = 0.04;
-  const Octree rim = run(*round, o);
-  const double h = edgeAt(rim, Vec3(1 - 1e-4, 1e-4, 1e-4));
-  EXPECT_LE(h * h / 8, 2 * 0.04 / 20);  // the sag over a cell's edge, with room for its diagonal
-  EXPECT_GT(h, 0.04 - 1e-12);
-  const auto buffer = static_cast<std::uint8_t>(RefineReason::FeatureBuffer);
-  EXPECT_GT(std::count(rim.refinedBy.begin(), rim.refinedBy.end(), buffer), 0) << "beside the rim as on it";
-}
-
-// Two surfaces meet in a ridge at 35 degrees. Where they flatten out beside it, large cells would make it
-// blunt; where they are plane or grow steeper, no cell does.
-TEST(RefinementCriteria, AsNeededKeepsShallowEdgesBetweenCurvedSurfacesSharp) {
-  OctreeDecomposeOptions o = bare(0.02);
-  o.refineEdges = true;
-  o.featureDepth = FeatureDepth::AsNeeded;
-  o.refineOpen = OpenEdgeRefinement::None;
-  const double slope = std::tan(17.5 / 180 * 3.14159265358979323846);
-  const auto ridge = [&](const std::function<double(double)>& fall) {
-    Soup s;
-    s.addGrid(Vec3(-1, 0, 0), Vec3(2, 0, 0), Vec3(0, 4, 0), 64);
-    return s.mapped([&](const Vec3& p) { return Vec3(p[0], p[1], -slope * fall(std::abs(p[0]))); }).model();
-  };
-  const Vec3 onRidge(1e-3, 2.01, -1e-3);
-  const auto edgeFor = [&](const SurfaceModel& model) { return edgeAt(run(model, o), onRidge); };
-  const double plane = edgeFor(*ridge([](double x) { return x; }));
-  const double steeper = edgeFor(*ridge([](double x) { return x + 0.5 * x * x; }));
-  const double flatter = edgeFor(*ridge([](double x) { return 0.1 * (1 - std::exp(-x / 0.1)); }));
-  EXPECT_GT(plane, 0.3);
-  EXPECT_EQ(steeper, plane);
-  EXPECT_LT(flatter, 0.14);  // 20 of 35 degrees are left over a width of 0.13
-  EXPECT_GT(flatter, 0.03);
 }
 
 TEST(RefinementCriteria, RefusesSizesThatMakeNoSense) {
