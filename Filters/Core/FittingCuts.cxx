@@ -22,6 +22,15 @@ class CutChooser {
   CutChooser(const NodeMover& mover, const DistanceField& field)
       : mover_(mover), mesh_(mover.mesh()), field_(field) {}
 
+  /// Would the face that the two are together be cut where they meet?
+  bool wouldCut(const WallMerge& pair) const {
+    const std::vector<Id> row = mergedRow(mesh_.faces[pair.first], mesh_.faces[pair.second], pair.a, pair.b);
+    const Span<Id> ring{row.data(), row.data() + row.size()};
+    const double now = distance(measureFace(mesh_.points, ring, true).centre);
+    return now >= kOff * mesh_.finestSize &&
+           distanceWith(ring, pair.a, pair.b, kMostLeft * now) < kMostLeft * now;
+  }
+
   WallCut choose(Id face) const {
     const Span<Id> row = mesh_.faces[face];
     const std::size_t n = row.size();
@@ -74,6 +83,28 @@ std::vector<WallCut> fittingCuts(const NodeMover& mover, const DistanceField& fi
   cuts.erase(std::remove_if(cuts.begin(), cuts.end(), [](const WallCut& c) { return c.face == kNone; }),
              cuts.end());
   return cuts;
+}
+
+std::vector<WallMerge> needlessCuts(const NodeMover& mover, const DistanceField& field,
+                                    const std::function<bool(Id, Id)>& isOnFeature) {
+  const PolyMesh& mesh = mover.mesh();
+  const CutChooser chooser(mover, field);
+  const std::vector<WallMerge> pairs = wallPairs(mesh);
+  std::vector<char> needless(pairs.size(), 0);
+  tbb::parallel_for(std::size_t(0), pairs.size(), [&](std::size_t i) {
+    needless[i] =
+        !isOnFeature(pairs[i].a, pairs[i].b) && !chooser.wouldCut(pairs[i]) && mover.mergeHolds(pairs[i]);
+  });
+  std::vector<char> taken(mesh.boundaryFaces(), 0);
+  std::vector<WallMerge> merges;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    char &first = taken[pairs[i].first - mesh.internalFaces()],
+         &second = taken[pairs[i].second - mesh.internalFaces()];
+    if (!needless[i] || first || second) continue;
+    first = second = 1;
+    merges.push_back(pairs[i]);
+  }
+  return merges;
 }
 
 }  // namespace pm

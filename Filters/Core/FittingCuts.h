@@ -2,6 +2,8 @@
 // Wall faces that lie nearer to the geometry when cut in two (thesis 4.7.3; part of ResolveFeatures).
 #pragma once
 
+#include <functional>
+
 #include "DistanceField.h"
 #include "NodeMover.h"
 #include "WallCuts.h"
@@ -12,5 +14,11 @@ namespace pm {
 /// nearer to it, judged by their centres and the middle of the diagonal (eq 4-20), if the mesh keeps its
 /// limits with it. Ascending by face; the same bits for any number of threads.
 std::vector<WallCut> fittingCuts(const NodeMover& mover, const DistanceField& field);
+
+/// Pairs of wall faces that lie no nearer to the geometry than the face they would be together: its cut would
+/// not be one of fittingCuts(). Not those whose common edge isOnFeature(a, b), nor those with which the mesh
+/// would leave its limits. Each face in one pair at most; ascending; the same bits for any number of threads.
+std::vector<WallMerge> needlessCuts(const NodeMover& mover, const DistanceField& field,
+                                    const std::function<bool(Id, Id)>& isOnFeature);
 
 }  // namespace pm

@@ -75,15 +75,16 @@ void NodeMover::remeasure(Touched& t) {
   }
 }
 
-/// The cell behind a cut face, with the two parts in the face's place.
-NodeMover::CellState NodeMover::cellWith(Id face, const CutParts& parts) const {
-  const Id c = mesh_.owner[face];
+/// The cell behind wall faces that are exchanged for others.
+NodeMover::CellState NodeMover::cellWith(Id c, const Exchange& exchange) const {
   std::vector<CellFace> faces;
   for (Id f : facesOfCell(c)) {
     const FaceState& s = this->face(f);
-    if (f != face) faces.push_back({mesh_.faces[f], &s.centre, &s.normal, mesh_.owner[f] == c ? 1.0 : -1.0});
+    if (!exchange.takesOut(f))
+      faces.push_back({mesh_.faces[f], &s.centre, &s.normal, mesh_.owner[f] == c ? 1.0 : -1.0});
   }
-  for (int i : {0, 1}) faces.push_back({parts.row(i), &parts.shapes[i].centre, &parts.shapes[i].normal, 1.0});
+  for (std::size_t i = 0; i < exchange.rows.size(); ++i)
+    faces.push_back({exchange.row(i), &exchange.shapes[i].centre, &exchange.shapes[i].normal, 1.0});
   CellState state;
   static_cast<CellMeasures&>(state) =
       measureCell(mesh_.points, pointsOf(c), {faces.data(), faces.data() + faces.size()});
@@ -91,27 +92,25 @@ NodeMover::CellState NodeMover::cellWith(Id face, const CutParts& parts) const {
   return state;
 }
 
-bool NodeMover::cutHolds(const WallCut& cut) const {
-  const Id c = mesh_.owner[cut.face];
+bool NodeMover::holdsWith(Exchange& exchange) const {
+  const Id old = exchange.gone.front(), c = mesh_.owner[old];
   if (region_.cellSlot[c] == kNone || region_.isRim(c)) return false;
-  CutParts parts;
-  cutRow(mesh_.faces[cut.face], cut.a, cut.b, parts.rows[0], parts.rows[1]);
   constexpr float most = std::numeric_limits<float>::max();
-  Shape best;  // a part is better than nothing before it
+  Shape best;  // a new face is better than nothing before it
   best.eta = best.cosWarpage = most;
-  for (int i : {0, 1}) {
-    parts.shapes[i] = shapeOf(cut.face, parts.row(i));
-    if (shapeRefuses(cut.face, parts.shapes[i], best) != Refusal::None) return false;
+  for (std::size_t i = 0; i < exchange.rows.size(); ++i) {
+    exchange.shapes.push_back(shapeOf(old, exchange.row(i)));
+    if (shapeRefuses(old, exchange.shapes[i], best) != Refusal::None) return false;
   }
-  const CellState state = cellWith(cut.face, parts);
+  const CellState state = cellWith(c, exchange);
   if (cellRefuses(state, cell(c)) != Refusal::None) return false;
   const Relation bestRelation{most, -most, most, most, most};
-  for (int i : {0, 1}) {
-    const Relation now = relationOf(cut.face, parts.row(i), parts.shapes[i], state, nullptr);
-    if (angleRefuses(cut.face, now, bestRelation) != Refusal::None) return false;
+  for (std::size_t i = 0; i < exchange.rows.size(); ++i) {
+    const Relation now = relationOf(old, exchange.row(i), exchange.shapes[i], state, nullptr);
+    if (angleRefuses(old, now, bestRelation) != Refusal::None) return false;
   }
   for (Id f : facesOfCell(c)) {
-    if (f == cut.face) continue;
+    if (exchange.takesOut(f)) continue;
     const bool owns = mesh_.owner[f] == c;
     const CellMeasures* other = owns ? (isInternal(f) ? &cell(mesh_.neighbour[f]) : nullptr) : &state;
     const CellMeasures& own = owns ? static_cast<const CellMeasures&>(state) : cell(mesh_.owner[f]);
@@ -119,6 +118,21 @@ bool NodeMover::cutHolds(const WallCut& cut) const {
     if (angleRefuses(f, now, face(f)) != Refusal::None) return false;
   }
   return true;
+}
+
+bool NodeMover::cutHolds(const WallCut& cut) const {
+  Exchange exchange;
+  exchange.gone = {cut.face};
+  exchange.rows.resize(2);
+  cutRow(mesh_.faces[cut.face], cut.a, cut.b, exchange.rows[0], exchange.rows[1]);
+  return holdsWith(exchange);
+}
+
+bool NodeMover::mergeHolds(const WallMerge& merge) const {
+  Exchange exchange;
+  exchange.gone = {merge.first, merge.second};
+  exchange.rows = {mergedRow(mesh_.faces[merge.first], mesh_.faces[merge.second], merge.a, merge.b)};
+  return holdsWith(exchange);
 }
 
 }  // namespace pm

@@ -16,6 +16,7 @@
 #pragma once
 
 #include <tbb/parallel_for.h>
+#include <algorithm>
 
 #include <atomic>
 #include <cstdint>
@@ -92,6 +93,8 @@ class NodeMover {
   /// Would the limits hold if a wall face of a movable point were cut from one of its points to another? What
   /// is outside a limit already may not get worse. Thread-safe.
   bool cutHolds(const WallCut& cut) const;
+  /// The same for two wall faces merged into one.
+  bool mergeHolds(const WallMerge& merge) const;
 
   /// Moves of one thread that are kept or put back as a whole (drifting with local optimisation, 4.4.1): the
   /// first is forced whatever it breaks, improve() at other points mends what it can, and settle() keeps all
@@ -178,10 +181,13 @@ class NodeMover {
     float skew = 0, weight = 0.5, volumeRatio = 1, tet = 0;  ///< tet: smallest of OpenFOAM's decomposition
   };
   struct FaceState : Shape, Relation {};
-  struct CutParts {
-    std::vector<Id> rows[2];
-    Shape shapes[2];
-    Span<Id> row(int i) const { return {rows[i].data(), rows[i].data() + rows[i].size()}; }
+  /// Wall faces of a cell that are to take the place of others.
+  struct Exchange {
+    std::vector<Id> gone;
+    std::vector<std::vector<Id>> rows;
+    std::vector<Shape> shapes;
+    bool takesOut(Id f) const { return std::find(gone.begin(), gone.end(), f) != gone.end(); }
+    Span<Id> row(std::size_t i) const { return {rows[i].data(), rows[i].data() + rows[i].size()}; }
   };
   struct CellState : CellMeasures {
     double determinant = 1;
@@ -238,7 +244,8 @@ class NodeMover {
                       isInternal(f) ? &cell(mesh_.neighbour[f]) : nullptr);
   }
   CellState cellNow(Id c) const;
-  CellState cellWith(Id face, const CutParts& parts) const;
+  CellState cellWith(Id c, const Exchange& exchange) const;
+  bool holdsWith(Exchange& exchange) const;
 
   Id slot(Id p) const { return region_.pointSlot[p]; }
   FaceState& face(Id f) { return faces_[region_.faceSlot[f]]; }

@@ -53,9 +53,15 @@ class Resolver {
     }
   }
 
-  /// Brings faces nearer to the geometry: by cuts, then by moves of their nodes.
+  /// Brings faces nearer to the geometry: by cuts, then by moves of their nodes. Cuts that brought nothing
+  /// are undone before.
   void fit() {
     monitor_.check(0.85, "fitting faces");
+    const auto merges = needlessCuts(*mover_, field_, [&](Id a, Id b) { return isOnFeature(a, b); });
+    if (!merges.empty()) {
+      mergeWallFaces(mesh_, merges);
+      renew();
+    }
     cut(fittingCuts(*mover_, field_));
     fitWall(*mover_, wall_, field_, fitRoles());
   }
@@ -81,6 +87,7 @@ class Resolver {
     snapper_->setTargets(paths);
   }
   std::vector<FitRole> fitRoles() const;
+  bool isOnFeature(Id a, Id b) const;
 
   PolyMesh& mesh_;
   const DistanceField& field_;
@@ -112,6 +119,17 @@ std::vector<FitRole> Resolver::fitRoles() const {
     roles[row] = on.distance2 <= std::pow(kOn * wall_.scale[row], 2) ? FitRole::Keep : FitRole::Search;
   });
   return roles;
+}
+
+/// Does the wall edge between two points lie along a feature?
+bool Resolver::isOnFeature(Id a, Id b) const {
+  constexpr double kOn = 1e-3, kAlong = 0.1;  // of the edge, for its ends and its middle
+  const Vec3 &p = mesh_.points[a], &q = mesh_.points[b];
+  const double length = (q - p).norm();
+  const auto near = [&](const Vec3& at, double part) {
+    return graph_.closest(at, part * length).segment != kNone;
+  };
+  return near(p, kOn) && near(q, kOn) && near(0.5 * (p + q), kAlong);
 }
 
 }  // namespace

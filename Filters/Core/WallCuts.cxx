@@ -16,39 +16,113 @@ void cutRow(Span<Id> row, Id a, Id b, std::vector<Id>& first, std::vector<Id>& s
   part(b, a, second);
 }
 
+namespace {
+
+/// The boundary faces of a mesh, taken out to be put back one by one, changed or not.
+class BoundaryRows {
+ public:
+  explicit BoundaryRows(PolyMesh& mesh) : mesh_(mesh) {
+    const Id internal = mesh.internalFaces();
+    const Id begin = mesh.faces.offsets[internal];
+    for (Id f = internal; f <= mesh.faceCount(); ++f) offsets_.push_back(mesh.faces.offsets[f] - begin);
+    values_.assign(mesh.faces.values.begin() + begin, mesh.faces.values.end());
+    owner_.assign(mesh.owner.begin() + internal, mesh.owner.end());
+    patch_.swap(mesh.patch);
+    mesh.faces.values.resize(begin);
+    mesh.faces.offsets.resize(static_cast<std::size_t>(internal) + 1);
+    mesh.owner.resize(internal);
+  }
+  Id count() const { return static_cast<Id>(owner_.size()); }
+  Span<Id> row(Id i) const { return {values_.data() + offsets_[i], values_.data() + offsets_[i + 1]}; }
+  /// Puts a row back in place of boundary face i.
+  template <class Row>
+  void add(Id i, const Row& row) {
+    mesh_.faces.push(row);
+    mesh_.owner.push_back(owner_[i]);
+    mesh_.patch.push_back(patch_[i]);
+  }
+
+ private:
+  PolyMesh& mesh_;
+  std::vector<Id> offsets_, values_, owner_, patch_;
+};
+
+/// The one edge the two faces share, none when they share more or nothing.
+WallMerge pairOf(const PolyMesh& mesh, Id first, Id second) {
+  const Span<Id> x = mesh.faces[first], y = mesh.faces[second];
+  const auto sharedPoints =
+      std::count_if(x.begin(), x.end(), [&](Id p) { return std::find(y.begin(), y.end(), p) != y.end(); });
+  if (sharedPoints != 2) return {};
+  for (std::size_t i = 0; i < x.size(); ++i)
+    for (std::size_t j = 0; j < y.size(); ++j)
+      if (x[i] == y[(j + 1) % y.size()] && x[(i + 1) % x.size()] == y[j])
+        return {first, second, x[(i + 1) % x.size()], x[i]};
+  return {};
+}
+
+}  // namespace
+
 void cutWallFaces(PolyMesh& mesh, std::vector<WallCut> cuts) {
   if (cuts.empty()) return;
   std::stable_sort(cuts.begin(), cuts.end(),
                    [](const WallCut& x, const WallCut& y) { return x.face < y.face; });
-  const Id internal = mesh.internalFaces(), count = mesh.faceCount();
-  const auto keep = static_cast<std::size_t>(mesh.faces.offsets[internal]);
-  const std::vector<Id> tail(mesh.faces.values.begin() + static_cast<std::ptrdiff_t>(keep),
-                             mesh.faces.values.end());
-  std::vector<Id> ends(mesh.faces.offsets.begin() + internal, mesh.faces.offsets.end());
-  const std::vector<Id> owner(mesh.owner.begin() + internal, mesh.owner.end()), patch = mesh.patch;
-  mesh.faces.values.resize(keep);
-  mesh.faces.offsets.resize(static_cast<std::size_t>(internal) + 1);
-  mesh.owner.resize(internal);
-  mesh.patch.clear();
-
+  BoundaryRows rows(mesh);
   std::vector<Id> first, second;
   auto cut = cuts.begin();
-  for (Id f = internal; f < count; ++f) {
-    const Id i = f - internal;
-    const Span<Id> row{tail.data() + ends[i] - keep, tail.data() + ends[i + 1] - keep};
-    const auto add = [&](const auto& part) {
-      mesh.faces.push(part);
-      mesh.owner.push_back(owner[i]);
-      mesh.patch.push_back(patch[i]);
-    };
+  for (Id i = 0; i < rows.count(); ++i) {
+    const Id f = mesh.internalFaces() + i;
     while (cut != cuts.end() && cut->face < f) ++cut;
     if (cut == cuts.end() || cut->face != f) {
-      add(row);
+      rows.add(i, rows.row(i));
       continue;
     }
-    cutRow(row, cut->a, cut->b, first, second);
-    add(first);
-    add(second);
+    cutRow(rows.row(i), cut->a, cut->b, first, second);
+    rows.add(i, first);
+    rows.add(i, second);
+  }
+}
+
+std::vector<WallMerge> wallPairs(const PolyMesh& mesh) {
+  const Id internal = mesh.internalFaces();
+  std::vector<std::pair<Id, Id>> byCell;
+  for (Id i = 0; i < mesh.boundaryFaces(); ++i)
+    if (mesh.isWallPatch(mesh.patch[i])) byCell.emplace_back(mesh.owner[internal + i], internal + i);
+  std::sort(byCell.begin(), byCell.end());
+  std::vector<WallMerge> pairs;
+  for (std::size_t i = 0; i < byCell.size(); ++i)
+    for (std::size_t j = i + 1; j < byCell.size() && byCell[j].first == byCell[i].first; ++j) {
+      const Id f = byCell[i].second, g = byCell[j].second;
+      if (mesh.patch[f - internal] != mesh.patch[g - internal]) continue;
+      if (const WallMerge pair = pairOf(mesh, f, g); pair.first != kNone) pairs.push_back(pair);
+    }
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const WallMerge& x, const WallMerge& y) { return x.first < y.first; });
+  return pairs;
+}
+
+std::vector<Id> mergedRow(Span<Id> first, Span<Id> second, Id a, Id b) {
+  std::vector<Id> row(first.begin(), first.end());
+  std::rotate(row.begin(), std::find(row.begin(), row.end(), a), row.end());
+  std::vector<Id> rest(second.begin(), second.end());
+  std::rotate(rest.begin(), std::find(rest.begin(), rest.end(), b), rest.end());
+  row.insert(row.end(), rest.begin() + 1, rest.end() - 1);
+  return row;
+}
+
+void mergeWallFaces(PolyMesh& mesh, const std::vector<WallMerge>& merges) {
+  if (merges.empty()) return;
+  const Id internal = mesh.internalFaces();
+  std::vector<const WallMerge*> of(mesh.boundaryFaces(), nullptr);
+  for (const WallMerge& m : merges)
+    if (of[m.first - internal] == nullptr && of[m.second - internal] == nullptr)
+      of[m.first - internal] = of[m.second - internal] = &m;
+  BoundaryRows rows(mesh);
+  for (Id i = 0; i < rows.count(); ++i) {
+    const WallMerge* m = of[i];
+    if (m == nullptr)
+      rows.add(i, rows.row(i));
+    else if (internal + i == std::min(m->first, m->second))
+      rows.add(i, mergedRow(rows.row(m->first - internal), rows.row(m->second - internal), m->a, m->b));
   }
 }
 

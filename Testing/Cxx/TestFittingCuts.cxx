@@ -79,6 +79,38 @@ TEST(FittingCuts, KeepTheLimitsAndLeaveFlatFacesAlone) {
   EXPECT_TRUE(fittingCuts(NodeMover(folded, strict), field).empty());
 }
 
+/// A cut through every wall face, along x = y where that goes, else across.
+std::vector<WallCut> allCuts(const PolyMesh& mesh, bool along) {
+  std::vector<WallCut> cuts;
+  for (Id i = 0; i < mesh.boundaryFaces(); ++i) {
+    if (!mesh.isWallPatch(mesh.patch[i])) continue;
+    const Id f = mesh.internalFaces() + i;
+    const Span<Id> row = mesh.faces[f];
+    const auto slope = [&](int k) {
+      const Vec3 d = mesh.points[row[k]] - mesh.points[row[k + 2]];
+      return d.x() * d.y();
+    };
+    const int k = (slope(0) > 0) == along ? 0 : 1;
+    cuts.push_back({f, row[k], row[k + 2]});
+  }
+  return cuts;
+}
+
+TEST(FittingCuts, ThoseThatBringNothingAreUndone) {
+  for (bool along : {true, false}) {
+    PolyMesh mesh = roofed(0.15);
+    const Id uncut = mesh.boundaryFaces();
+    const auto model = roof(0.15).model();
+    DistanceField field(*model, 1);
+    cutWallFaces(mesh, allCuts(mesh, along));
+    EXPECT_TRUE(needlessCuts(NodeMover(mesh, {}), field, [](Id, Id) { return true; }).empty());
+    mergeWallFaces(mesh, needlessCuts(NodeMover(mesh, {}), field, [](Id, Id) { return false; }));
+    // Of the 16 cuts only the four on the ridge bring faces nearer; across it all are in vain.
+    EXPECT_EQ(mesh.boundaryFaces(), uncut + (along ? 4 : 0));
+    EXPECT_EQ(whatIsWrong(mesh), "");
+  }
+}
+
 TEST(FittingCuts, LeaveFacesThatOnlyBend) {
   for (const double slope : {0.1, 0.15}) {  // folds of 16 and of 24 degrees
     PolyMesh mesh = roofed(slope);

@@ -252,6 +252,40 @@ TEST(NodeMover, SaysOfACutWhetherTheMeshStaysValid) {
   EXPECT_GT(breaking, 50u);
 }
 
+/// One cut a wall face at most.
+void cutWhereItHolds(PolyMesh& mesh, const QualityLimits& limits) {
+  const NodeMover mover(mesh, limits, pointsNearWall(mesh, 0));
+  std::vector<WallCut> cuts;
+  forEachDiagonal(mesh, 1, [&](const WallCut& cut) {
+    if (mover.cutHolds(cut)) cuts.push_back(cut);
+  });
+  cutWallFaces(mesh, cuts);
+}
+
+TEST(NodeMover, SaysOfAMergeWhetherTheMeshStaysValid) {
+  std::size_t holding = 0, breaking = 0;
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    PolyMesh mesh = seed % 2 == 0 ? layer(seed) : shaken(seed);
+    QualityLimits limits;
+    limits.minTet = 1e-5;
+    cutWhereItHolds(mesh, limits);
+    // No more than the faces have now: two halves may keep it and the whole not.
+    limits.maxWarpage = summarise(mesh, measure(mesh), limits).maxWarpage * (1 + 1e-6);
+    if (whatFoamRefuses(mesh, limits) != "") continue;
+    const NodeMover mover(mesh, limits, pointsNearWall(mesh, 0));
+    for (const WallMerge& merge : wallPairs(mesh)) {
+      PolyMesh merged = mesh;
+      mergeWallFaces(merged, {merge});
+      const std::string wrong = whatFoamRefuses(merged, limits);
+      const bool holds = mover.mergeHolds(merge);
+      EXPECT_EQ(holds, wrong.empty()) << "domain " << seed << ", face " << merge.first << ": " << wrong;
+      ++(holds ? holding : breaking);
+    }
+  }
+  EXPECT_GT(holding, 50u);
+  EXPECT_GT(breaking, 5u);
+}
+
 TEST(NodeMover, CutsAddNoViolationWhereLimitsAreBrokenAlready) {
   QualityLimits strict;
   strict.maxAngleInternal = 35;

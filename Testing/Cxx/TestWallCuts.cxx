@@ -150,4 +150,43 @@ TEST(WallCuts, OfRandomMeshesKeepTopologyAndCanBePutInOrder) {
   EXPECT_GT(count, 400u);
 }
 
+std::uint64_t sumInOrder(PolyMesh mesh) {
+  canonicalise(mesh);
+  return checksum(mesh);
+}
+
+TEST(WallCuts, MergingUndoesThem) {
+  std::size_t count = 0;
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    Monitor monitor;
+    PolyMesh front = repairedFront(randomDomain(seed, 1), false).mesh;
+    if (front.cellCount == 0) continue;
+    const PolyMesh mesh = dummyLayer(std::move(front), {}, monitor);
+    EXPECT_TRUE(wallPairs(mesh).empty()) << "domain " << seed;
+    const std::vector<WallCut> cuts = randomCuts(mesh, seed, 1 + seed % 4);
+    PolyMesh cut = cutMesh(mesh, cuts);
+    const std::vector<WallMerge> pairs = wallPairs(cut);
+    EXPECT_EQ(pairs.size(), cuts.size());
+    mergeWallFaces(cut, pairs);
+    EXPECT_EQ(checkTopology(cut), "") << "domain " << seed;
+    EXPECT_EQ(sumInOrder(cut), sumInOrder(mesh)) << "domain " << seed;
+    count += pairs.size();
+  }
+  EXPECT_GT(count, 400u);
+}
+
+TEST(WallCuts, AFaceIsMergedOnce) {
+  PolyMesh mesh = flatWalls()[0];
+  const std::vector<WallCut> cuts = randomCuts(mesh, 3, 1);
+  mesh = cutMesh(std::move(mesh), cuts);
+  const auto half = static_cast<std::ptrdiff_t>(cuts.size() / 2);
+  std::vector<WallMerge> pairs = wallPairs(mesh);
+  std::vector<WallMerge> twice(pairs.begin(), pairs.begin() + half);
+  twice.insert(twice.end(), twice.begin(), twice.end());
+  const Id before = mesh.faceCount();
+  mergeWallFaces(mesh, twice);
+  EXPECT_EQ(mesh.faceCount(), before - half);
+  EXPECT_EQ(checkTopology(mesh), "");
+}
+
 }  // namespace
