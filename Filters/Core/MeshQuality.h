@@ -17,7 +17,7 @@ struct QualityLimits {
   double minEtaInternal = 0.1;  ///< face degradation
   double minEtaBoundary = 0.1;
   double maxAngleInternal = 70;  ///< face normal against the line between cell centres
-  double maxAngleBoundary = 72;
+  double maxAngleBoundary = 71;
   double maxWarpage = 72;
   double maxSkewInternal = 3.8;   ///< OpenFOAM's definition; checkMesh fails at 4
   double maxSkewBoundary = 3.8;   ///< checkMesh draws no line between the two

@@ -44,6 +44,7 @@ class Resolver {
       snapper_->report(history);
       if (round + 1 < options_.rounds) cut(snapper_->helpfulCuts());
     }
+    for (bool corners : {false, true}) snapper_->snap(corners);  // where the last round has made room
     snapper_->workAroundAll();
     snapper_->releaseMissed();
     snapper_->relax();
