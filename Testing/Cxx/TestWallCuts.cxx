@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <random>
+#include <string>
 
 #include "DummyLayer.h"
 #include "TestMeshes.h"
@@ -129,7 +130,9 @@ TEST(WallCuts, ComeInAnyOrder) {
   EXPECT_EQ(checksum(cutMesh(mesh, cuts)), sum);
 }
 
-TEST(WallCuts, OfRandomMeshesKeepTopologyAndCanBePutInOrder) {
+/// Calls body(mesh with a layer, cuts of it, seed) for many small domains; together they have many cuts.
+template <class Body>
+void forRandomMeshes(const Body& body) {
   std::size_t count = 0;
   for (unsigned seed = 0; seed < 60; ++seed) {
     Monitor monitor;
@@ -138,16 +141,23 @@ TEST(WallCuts, OfRandomMeshesKeepTopologyAndCanBePutInOrder) {
     const PolyMesh mesh = dummyLayer(std::move(front), {}, monitor);
     const std::vector<WallCut> cuts = randomCuts(mesh, seed, 1 + seed % 4);
     count += cuts.size();
+    SCOPED_TRACE("domain " + std::to_string(seed));
+    body(mesh, cuts, seed);
+  }
+  EXPECT_GT(count, 400u);
+}
+
+TEST(WallCuts, OfRandomMeshesKeepTopologyAndCanBePutInOrder) {
+  forRandomMeshes([](const PolyMesh& mesh, const std::vector<WallCut>& cuts, unsigned seed) {
     PolyMesh cut = cutMesh(mesh, cuts);
-    ASSERT_EQ(checkTopology(cut), "") << "domain " << seed;
+    ASSERT_EQ(checkTopology(cut), "");
     EXPECT_EQ(cut.faceCount(), mesh.faceCount() + static_cast<Id>(cuts.size()));
     PolyMesh other = shuffled(cut, seed);
     canonicalise(cut);
     canonicalise(other);
-    EXPECT_EQ(checkTopology(cut), "") << "domain " << seed;
-    EXPECT_EQ(checksum(cut), checksum(other)) << "domain " << seed;
-  }
-  EXPECT_GT(count, 400u);
+    EXPECT_EQ(checkTopology(cut), "");
+    EXPECT_EQ(checksum(cut), checksum(other));
+  });
 }
 
 std::uint64_t sumInOrder(PolyMesh mesh) {
@@ -156,23 +166,15 @@ std::uint64_t sumInOrder(PolyMesh mesh) {
 }
 
 TEST(WallCuts, MergingUndoesThem) {
-  std::size_t count = 0;
-  for (unsigned seed = 0; seed < 60; ++seed) {
-    Monitor monitor;
-    PolyMesh front = repairedFront(randomDomain(seed, 1), false).mesh;
-    if (front.cellCount == 0) continue;
-    const PolyMesh mesh = dummyLayer(std::move(front), {}, monitor);
-    EXPECT_TRUE(wallPairs(mesh).empty()) << "domain " << seed;
-    const std::vector<WallCut> cuts = randomCuts(mesh, seed, 1 + seed % 4);
+  forRandomMeshes([](const PolyMesh& mesh, const std::vector<WallCut>& cuts, unsigned) {
+    EXPECT_TRUE(wallPairs(mesh).empty());
     PolyMesh cut = cutMesh(mesh, cuts);
     const std::vector<WallMerge> pairs = wallPairs(cut);
     EXPECT_EQ(pairs.size(), cuts.size());
     mergeWallFaces(cut, pairs);
-    EXPECT_EQ(checkTopology(cut), "") << "domain " << seed;
-    EXPECT_EQ(sumInOrder(cut), sumInOrder(mesh)) << "domain " << seed;
-    count += pairs.size();
-  }
-  EXPECT_GT(count, 400u);
+    EXPECT_EQ(checkTopology(cut), "");
+    EXPECT_EQ(sumInOrder(cut), sumInOrder(mesh));
+  });
 }
 
 TEST(WallCuts, AFaceIsMergedOnce) {
