@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "NodeMover.h"
 #include "WallSurface.h"
@@ -22,8 +23,8 @@ constexpr int kFlatteningSweeps = 3;
 // Rounds after the front has arrived, in which it is only smoothed along the geometry.
 constexpr int kSettlingRounds = 2;
 // A node farther than this from the geometry after projection, in length scales, is stuck. Rounds to free
-// such nodes, and the part of them that may be left when another round is worth it; while they are few, of
-// all wall nodes, it always is.
+// such nodes, and the part of their way that may be left when another round is worth it; while they are few,
+// of all wall nodes, it always is.
 constexpr double kStuck = 0.02;
 constexpr int kFreeingRounds = 12;
 constexpr double kWorthFreeing = 0.9, kFew = 0.002;
@@ -76,12 +77,15 @@ class Projector {
       approach(1.0 / std::max(1, rounds - kSettlingRounds - round));
       if (round % 3 == 2) smoothInner();
     }
-    Id before = wall_.size();
+    double before = std::numeric_limits<double>::infinity();
     for (int round = 0; round < kFreeingRounds; ++round) {
       monitor.check(0.9 + 0.1 * round / kFreeingRounds, "freeing stuck nodes");
       const std::vector<Id> stuck = stuckNodes();
-      if (stuck.empty() || stuck.size() > std::max(kWorthFreeing * before, kFew * wall_.size())) break;
-      before = static_cast<Id>(stuck.size());
+      double left = 0;  // of their way
+      for (Id row : stuck) left += distance_[row];
+      const bool few = stuck.size() <= kFew * wall_.size();
+      if (stuck.empty() || (left > kWorthFreeing * before && !few)) break;
+      before = left;
       freeNodes(stuck);
       approach(1);
     }
