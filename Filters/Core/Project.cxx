@@ -23,8 +23,8 @@ constexpr int kFlatteningSweeps = 3;
 // Rounds after the front has arrived, in which it is only smoothed along the geometry.
 constexpr int kSettlingRounds = 2;
 // A node farther than this from the geometry after projection, in length scales, is stuck. Rounds to free
-// such nodes, and the part of their way that may be left when another round is worth it; while they are few,
-// of all wall nodes, it always is.
+// such nodes, and the part of them or of their way that may be left when another round is worth it; while
+// they are few, of all wall nodes, it always is.
 constexpr double kStuck = 0.02;
 constexpr int kFreeingRounds = 12;
 constexpr double kWorthFreeing = 0.9, kFew = 0.002;
@@ -77,15 +77,18 @@ class Projector {
       approach(1.0 / std::max(1, rounds - kSettlingRounds - round));
       if (round % 3 == 2) smoothInner();
     }
-    double before = std::numeric_limits<double>::infinity();
+    std::size_t countBefore = wall_.nodes.size();
+    double wayBefore = std::numeric_limits<double>::infinity();
     for (int round = 0; round < kFreeingRounds; ++round) {
       monitor.check(0.9 + 0.1 * round / kFreeingRounds, "freeing stuck nodes");
       const std::vector<Id> stuck = stuckNodes();
-      double left = 0;  // of their way
-      for (Id row : stuck) left += distance_[row];
-      const bool few = stuck.size() <= kFew * wall_.size();
-      if (stuck.empty() || (left > kWorthFreeing * before && !few)) break;
-      before = left;
+      double way = 0;
+      for (Id row : stuck) way += distance_[row];
+      const bool fewer = stuck.size() <= kWorthFreeing * countBefore,
+                 nearer = way <= kWorthFreeing * wayBefore;
+      if (stuck.empty() || !(fewer || nearer || stuck.size() <= kFew * wall_.size())) break;
+      countBefore = stuck.size();
+      wayBefore = way;
       freeNodes(stuck);
       approach(1);
     }
