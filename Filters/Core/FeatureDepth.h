@@ -19,9 +19,8 @@ namespace pm {
 
 class FeatureDemand {
  public:
-  static constexpr double kMostTurn = 30;      ///< degrees, over a cell and its neighbours
-  static constexpr double kMostSag = 1. / 20;  ///< of the finest cell's edge
-
+  static constexpr double kMostTurn = 30;        ///< degrees, over a cell and its neighbours
+  static constexpr double kMostSag = 1. / 20;    ///< of the finest cell's edge
   static constexpr double kLeastShare = 2. / 3;  ///< of the sharp angle, over a cell to either side
 
   /// Finds the model's critical edges; keeps references to the model and the options.

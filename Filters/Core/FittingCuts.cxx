@@ -95,15 +95,9 @@ std::vector<WallMerge> needlessCuts(const NodeMover& mover, const DistanceField&
     needless[i] =
         !isOnFeature(pairs[i].a, pairs[i].b) && !chooser.wouldCut(pairs[i]) && mover.mergeHolds(pairs[i]);
   });
-  std::vector<char> taken(mesh.boundaryFaces(), 0);
   std::vector<WallMerge> merges;
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    char &first = taken[pairs[i].first - mesh.internalFaces()],
-         &second = taken[pairs[i].second - mesh.internalFaces()];
-    if (!needless[i] || first || second) continue;
-    first = second = 1;
-    merges.push_back(pairs[i]);
-  }
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    if (needless[i]) merges.push_back(pairs[i]);
   return merges;
 }
 

@@ -17,7 +17,7 @@ std::vector<WallCut> fittingCuts(const NodeMover& mover, const DistanceField& fi
 
 /// Pairs of wall faces that lie no nearer to the geometry than the face they would be together: its cut would
 /// not be one of fittingCuts(). Not those whose common edge isOnFeature(a, b), nor those with which the mesh
-/// would leave its limits. Each face in one pair at most; ascending; the same bits for any number of threads.
+/// would leave its limits. In the order of wallPairs(); the same bits for any number of threads.
 std::vector<WallMerge> needlessCuts(const NodeMover& mover, const DistanceField& field,
                                     const std::function<bool(Id, Id)>& isOnFeature);
 

@@ -58,11 +58,7 @@ class Resolver {
   /// are undone before.
   void fit() {
     monitor_.check(0.85, "fitting faces");
-    const auto merges = needlessCuts(*mover_, field_, [&](Id a, Id b) { return isOnFeature(a, b); });
-    if (!merges.empty()) {
-      mergeWallFaces(mesh_, merges);
-      renew();
-    }
+    merge(needlessCuts(*mover_, field_, [&](Id a, Id b) { return isOnFeature(a, b); }));
     cut(fittingCuts(*mover_, field_));
     fitWall(*mover_, wall_, field_, fitRoles());
   }
@@ -78,6 +74,11 @@ class Resolver {
   void cut(const std::vector<WallCut>& cuts) {
     if (cuts.empty()) return;
     cutWallFaces(mesh_, cuts);
+    renew();
+  }
+  void merge(const std::vector<WallMerge>& merges) {
+    if (merges.empty()) return;
+    mergeWallFaces(mesh_, merges);
     renew();
   }
   void setTargets(const PathHistory& history) {

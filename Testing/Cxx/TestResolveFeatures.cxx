@@ -321,9 +321,9 @@ std::vector<double> patchAreas(const PolyMesh& mesh) {
   return areas;
 }
 
-/// Three rotations: on the average at least that share of the features' length, and 0.95 of it each time; one
-/// corner may be missed in all of them. The whole of each patch is where it was.
-void expectResolved(const Soup& shape, double size, Id corners, double share = 0.99) {
+/// Three rotations: on the average at least that share of the features' length, and `least` of it each time;
+/// one corner may be missed in all of them. The whole of each patch is where it was.
+void expectResolved(const Soup& shape, double size, Id corners, double share = 0.99, double least = 0.97) {
   constexpr int kRotations = 3;
   const std::vector<double> before = patchAreas(shape);
   double shares = 0;
@@ -337,7 +337,7 @@ void expectResolved(const Soup& shape, double size, Id corners, double share = 0
     EXPECT_EQ(r.report.corners, corners);
     missed += corners - r.report.resolvedCorners;
     const double now = r.report.resolvedLength / r.report.featureLength;
-    EXPECT_GE(now, 0.95);
+    EXPECT_GE(now, least);
     shares += now;
     const std::vector<double> after = patchAreas(r.mesh);
     for (std::size_t p = 0; p < after.size(); ++p)
@@ -350,7 +350,7 @@ void expectResolved(const Soup& shape, double size, Id corners, double share = 0
 TEST(ResolveFeatures, RotatedCube) { expectResolved(cube(), 2. / 25, 8); }
 TEST(ResolveFeatures, RotatedBlock) { expectResolved(block(), 1. / 25, 12); }
 TEST(ResolveFeatures, RotatedCylinder) { expectResolved(cylinder(64), 2. / 25, 0); }
-TEST(ResolveFeatures, RotatedCone) { expectResolved(cone(64), 2. / 25, 0, 0.98); }
+TEST(ResolveFeatures, RotatedCone) { expectResolved(cone(64), 2. / 25, 0, 0.98, 0.95); }
 TEST(ResolveFeatures, RotatedCutSphere) { expectResolved(cutSphere(), 2. / 25, 4); }
 
 TEST(ResolveFeatures, RotatedShapesGiveTheSameBitsForAnyNumberOfThreads) {
