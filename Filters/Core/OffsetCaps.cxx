@@ -112,6 +112,7 @@ Caps nearHoles(const Caps& caps, const std::vector<const Leak*>& holes, double r
     keep[i] = std::sqrt(membranes->closest(centre).distance2) <= reach + longestEdge(caps, t);
   });
   Caps out;
+  out.coarseSize = caps.coarseSize;
   std::vector<Id> number(caps.points.size(), kNone);
   for (std::size_t i = 0; i < keep.size(); ++i) {
     if (!keep[i]) continue;
@@ -129,12 +130,37 @@ Caps nearHoles(const Caps& caps, const std::vector<const Leak*>& holes, double r
   return out;
 }
 
-// The coarse wall bulges into the room where a hole leaves it nothing to lie on.
-void settle(Caps& caps, const SurfaceModel& surface, double near, Monitor& monitor) {
+std::vector<Vec3> normalsOf(const Caps& caps) {
+  std::vector<Vec3> normals(caps.points.size(), Vec3::Zero());
+  for (const auto& t : caps.triangles) {
+    const Vec3 n = (caps.points[t[1]] - caps.points[t[0]]).cross(caps.points[t[2]] - caps.points[t[0]]);
+    for (Id p : t) normals[p] += n;
+  }
+  for (Vec3& n : normals) n.normalize();
+  return normals;
+}
+
+// Which points go to the geometry before the others relax: those near it, and, as coarse faces are chords,
+// those behind sound geometry. Points over a hole see its rim first, and from the side.
+std::vector<std::uint8_t> pointsToHold(const Caps& caps, const SurfaceModel& surface, double near) {
+  constexpr double kFacing = 0.9;   // cosine
+  constexpr double kDeepest = 0.4;  // of a coarse cell: faces that reach over the rim dip into the room
+  const std::vector<Vec3> normals = normalsOf(caps);
   std::vector<std::uint8_t> held(caps.points.size());
   tbb::parallel_for(std::size_t(0), held.size(), [&](std::size_t i) {
-    held[i] = surface.closest(caps.points[i]).distance2 <= near * near;
+    const Closest c = surface.closest(caps.points[i]);
+    const double distance = std::sqrt(c.distance2);
+    const Vec3 way = c.point - caps.points[i];
+    held[i] = distance <= near ||
+              (distance <= kDeepest * caps.coarseSize && way.dot(normals[i]) >= kFacing * distance &&
+               std::abs(way.dot(surface.normal(c.triangle))) >= kFacing * distance);
   });
+  return held;
+}
+
+// The coarse wall bulges into the room where a hole leaves it nothing to lie on.
+void settle(Caps& caps, const SurfaceModel& surface, double near, Monitor& monitor) {
+  const std::vector<std::uint8_t> held = pointsToHold(caps, surface, near);
   Membrane film;
   film.points.swap(caps.points);
   film.triangles.swap(caps.triangles);
@@ -172,16 +198,6 @@ bool coversAll(const Caps& caps, const std::vector<const Leak*>& holes, double r
                       [&](const Leak* hole) { return nearHoles(caps, {hole}, reach).triangles.empty(); });
 }
 
-std::vector<Vec3> normalsOf(const Caps& caps) {
-  std::vector<Vec3> normals(caps.points.size(), Vec3::Zero());
-  for (const auto& t : caps.triangles) {
-    const Vec3 n = (caps.points[t[1]] - caps.points[t[0]]).cross(caps.points[t[2]] - caps.points[t[0]]);
-    for (Id p : t) normals[p] += n;
-  }
-  for (Vec3& n : normals) n.normalize();
-  return normals;
-}
-
 // A point near the geometry goes to its far side, measured from the closest triangle; one over a hole moves
 // along the wall's own normal, so that the cap does not fold onto the rim, and the less the farther it is
 // from the rim: no cell has to be kept from passing there, and a room behind a wide opening keeps its volume.
@@ -209,11 +225,11 @@ Caps coarsestThatWorks(const SurfaceModel& model, const OctreeDecomposeOptions& 
                        const OffsetOptions& wanted, const InsideTest& inside,
                        const std::vector<const Leak*>& holes, Monitor& monitor) {
   const auto made = [&](const SurfaceModel& surface, double size) {
-    const Caps wall = wallOf(coarseMesh(surface, options, size, inside, monitor));
+    Caps wall = wallOf(coarseMesh(surface, options, size, inside, monitor));
+    wall.coarseSize = size;
     Caps caps = fineNearHoles(wall, holes, std::max(size, wanted.overlap), wanted.finest);
     settle(caps, surface, wanted.finest, monitor);
     caps = nearHoles(caps, holes, wanted.overlap);
-    caps.coarseSize = size;
     offset(caps, model, wanted.offset, wanted.finest);
     if (!coversAll(caps, holes, wanted.overlap)) throw RegionError("the cells do not reach every hole");
     return caps;

@@ -135,6 +135,12 @@ def figure_3_11_table(rows):
                  [[str(2 ** bits)] + [f"{1000 * r.cpu:.0f}" for r in row] for bits, row in sorted(boxes.items())])
 
 
+def intersections_table(rows):
+    return table(["triangles", "segments of the curves", "s", "CPU s"],
+                 [[f"{r.counters['triangles']:,.0f}", f"{r.counters['segments']:,.0f}", f"{r.seconds:.3f}",
+                   f"{r.cpu:.3f}"] for r in rows["selfIntersectionCurves"]])
+
+
 def closest_table(rows):
     return table(["triangles", "CPU µs a query"],
                  [[f"{r.counters['triangles']:,.0f}", f"{1e6 * r.cpu:.2f}"] for r in rows["closestPoint"]])
@@ -154,6 +160,7 @@ def main():
         page = write_table(page, name, growth_table(rows, name, label))
     page = write_table(page, "localisationOfLargeModel", large_model_table(rows))
     page = write_table(page, "localisationFigure311", figure_3_11_table(rows))
+    page = write_table(page, "selfIntersectionCurves", intersections_table(rows))
     page = write_table(page, "closestPoint", closest_table(rows))
     with open(path, "w", encoding="utf-8") as file:
         file.write(page)

@@ -267,6 +267,27 @@ TEST(CloseHoles, AnOffsetCapIsSmoothAndLiesSnugly) {
     for (int k = 0; k < 3; ++k) ASSERT_NEAR(closed->corner(t, k).x(), 0, 0.2 * kCell);
 }
 
+TEST(CloseHoles, AnOffsetCapFollowsRoundGeometry) {
+  const Soup ball =
+      cube(12).mapped([](const Vec3& p) { return Vec3((p - Vec3::Constant(0.5)).normalized()); });
+  constexpr double cell = 0.1, radius = 2.5 * cell;
+  for (const Vec3& pole : {Vec3(1, 0, 0), Vec3(-0.48, 0.6, 0.64), Vec3(0.6, -0.64, -0.48)}) {
+    const auto model = punched(ball, pole, radius).model();
+    CloseHolesOptions options;
+    options.method = HoleMethod::Offset;
+    Monitor monitor;
+    CloseHolesReport report;
+    const auto closed = closeHoles(*model, cells(cell), options, monitor, &report);
+    EXPECT_TRUE(report.tight);
+    for (Id t = model->triangleCount(); t < closed->triangleCount(); ++t)
+      for (int k = 0; k < 3; ++k) {
+        const Vec3& p = closed->corner(t, k);
+        if ((p - pole).norm() < radius + 0.5 * cell) continue;  // over the hole
+        ASSERT_NEAR(p.norm(), 1, 0.25 * cell) << "the coarse wall dips by more than a cell here";
+      }
+  }
+}
+
 TEST(CloseHoles, OffsetLooksOnlyAtWhatIsNearTheRoom) {
   Soup soup = leakyCube(6 * kCell);
   soup.append(cube(1, true).mapped([](const Vec3& p) { return Vec3(5000 * p + Vec3(2, 0, 0)); }));
