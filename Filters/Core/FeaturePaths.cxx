@@ -129,12 +129,15 @@ bool PathFinder::reachable(Id row, const Vec3& target) const {
   return true;
 }
 
+// A path can go around a node that missed, a corner has few others to take.
+constexpr double kCornerShare = 0.3;
+
 void PathFinder::addCorner(Id corner, Id row, Block& block) const {
   if (corner == kNone) return;
   const Vec3& at = graph_.corners()[corner];
   const double d = (mesh_.points[wall_.nodes[row]] - at).norm() / wall_.scale[row];
   if (d <= options_.cornerReach && reachable(row, at))
-    block.corners.push_back({d + penalty(row), corner, row});
+    block.corners.push_back({d + kCornerShare * penalty(row), corner, row});
 }
 
 void PathFinder::gatherNode(Id row, Block& block) const {

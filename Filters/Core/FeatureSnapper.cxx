@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace pm {
 namespace {
@@ -29,13 +30,11 @@ FeatureSnapper::FeatureSnapper(NodeMover& mover, const WallSurface& wall, const 
 
 void FeatureSnapper::setTargets(const FeaturePaths& paths) {
   const std::size_t n = wall_.nodes.size();
-  role_.assign(n, Role::Outside);
-  target_.assign(n, Vec3::Zero());
+  const std::vector<Role> roleBefore = std::exchange(role_, std::vector<Role>(n, Role::Outside));
+  const std::vector<Vec3> targetBefore = std::exchange(target_, std::vector<Vec3>(n, Vec3::Zero()));
   curve_.assign(n, kNone);
   corner_.assign(n, kNone);
   before_.assign(n, kNone);
-  snapTried_.assign(n, 0);
-  forceTried_.assign(n, 0);
   after_.assign(n, kNone);
   for (const NodeTarget& t : paths.targets) {
     const Id row = wall_.rowOf[t.node];
@@ -44,6 +43,11 @@ void FeatureSnapper::setTargets(const FeaturePaths& paths) {
     curve_[row] = t.curve;
     corner_[row] = t.corner;
   }
+  for (std::vector<Id>* tried : {&snapTried_, &forceTried_}) tried->resize(n, 0);
+  // What failed fails again unless something has changed.
+  for (std::size_t row = 0; row < roleBefore.size(); ++row)
+    if (role_[row] != roleBefore[row] || target_[row] != targetBefore[row])
+      snapTried_[row] = forceTried_[row] = 0;
   for (Id i = 0; i < paths.pieces.rows(); ++i) {
     const Span<Id> piece = paths.pieces[i];
     for (std::size_t k = 0; k + 1 < piece.size(); ++k) {
@@ -53,6 +57,10 @@ void FeatureSnapper::setTargets(const FeaturePaths& paths) {
     }
   }
   workAround(missed());
+}
+
+void FeatureSnapper::noteChange(Span<Id> points) {
+  for (Id p : points) changed_[p] = pass_;
 }
 
 void FeatureSnapper::workAroundAll() {
@@ -142,7 +150,7 @@ std::vector<Id> FeatureSnapper::missed() const {
 }
 
 void FeatureSnapper::report(PathHistory& history) const {
-  constexpr float kMissPenalty = 0.3f;  // length scales
+  constexpr float kMissPenalty = 1;  // length scales: as much as the detour of an edge
   const std::size_t n = wall_.nodes.size();
   history.penalty.resize(n, 0.0f);
   history.curve.assign(n, kNone);

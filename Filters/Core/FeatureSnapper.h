@@ -21,6 +21,8 @@ class FeatureSnapper {
 
   /// Takes over targets, and works from now on around those that are not reached.
   void setTargets(const FeaturePaths& paths);
+  /// Something about these points has changed other than by the snapper's own moves.
+  void noteChange(Span<Id> points);
   /// relax() and polish() keep to three rings of wall nodes around these rows; around all targets.
   void workAround(std::vector<Id> rows);
   void workAroundAll();

@@ -85,6 +85,18 @@ std::vector<WallCut> fittingCuts(const NodeMover& mover, const DistanceField& fi
   return cuts;
 }
 
+namespace {
+
+/// Is one of the cells beside the faces marked?
+template <class Faces>
+bool isBeside(const PolyMesh& mesh, const Faces& faces, const std::vector<char>& marked) {
+  return std::any_of(faces.begin(), faces.end(), [&](Id f) {
+    return marked[mesh.owner[f]] || (f < mesh.internalFaces() && marked[mesh.neighbour[f]]);
+  });
+}
+
+}  // namespace
+
 std::vector<WallMerge> needlessCuts(const NodeMover& mover, const DistanceField& field,
                                     const std::function<bool(Id, Id)>& isOnFeature) {
   const PolyMesh& mesh = mover.mesh();
@@ -95,10 +107,29 @@ std::vector<WallMerge> needlessCuts(const NodeMover& mover, const DistanceField&
     needless[i] =
         !isOnFeature(pairs[i].a, pairs[i].b) && !chooser.wouldCut(pairs[i]) && mover.mergeHolds(pairs[i]);
   });
+  std::vector<char> merged(mesh.cellCount, 0);
   std::vector<WallMerge> merges;
-  for (std::size_t i = 0; i < pairs.size(); ++i)
-    if (needless[i]) merges.push_back(pairs[i]);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const Id c = mesh.owner[pairs[i].first];
+    if (!needless[i] || isBeside(mesh, mover.facesOfCell(c), merged)) continue;
+    merged[c] = 1;
+    merges.push_back(pairs[i]);
+  }
   return merges;
+}
+
+std::vector<WallMerge> cutsToUndo(const NodeMover& mover, const std::vector<WallCut>& cuts) {
+  using Edge = std::pair<Id, Id>;
+  std::vector<Edge> broken;
+  for (const WallCut& c : cuts)
+    if (!mover.holdsAround(c.a) || !mover.holdsAround(c.b)) broken.push_back(std::minmax(c.a, c.b));
+  if (broken.empty()) return {};
+  std::sort(broken.begin(), broken.end());
+  std::vector<WallMerge> undo;
+  for (const WallMerge& pair : wallPairs(mover.mesh()))
+    if (std::binary_search(broken.begin(), broken.end(), Edge(std::minmax(pair.a, pair.b))))
+      undo.push_back(pair);
+  return undo;
 }
 
 }  // namespace pm

@@ -17,8 +17,13 @@ std::vector<WallCut> fittingCuts(const NodeMover& mover, const DistanceField& fi
 
 /// Pairs of wall faces that lie no nearer to the geometry than the face they would be together: its cut would
 /// not be one of fittingCuts(). Not those whose common edge isOnFeature(a, b), nor those with which the mesh
-/// would leave its limits. In the order of wallPairs(); the same bits for any number of threads.
+/// would leave its limits; and no two of one cell or of neighbouring ones, so that all hold together. In the
+/// order of wallPairs(); the same bits for any number of threads.
 std::vector<WallMerge> needlessCuts(const NodeMover& mover, const DistanceField& field,
                                     const std::function<bool(Id, Id)>& isOnFeature);
+
+/// Each cut holds beside the mesh as it was before; those of neighbouring cells may not hold together. Of
+/// cuts that are made, the ones at whose ends the mesh is outside its limits, as merges that undo them.
+std::vector<WallMerge> cutsToUndo(const NodeMover& mover, const std::vector<WallCut>& cuts);
 
 }  // namespace pm

@@ -92,22 +92,31 @@ NodeMover::CellState NodeMover::cellWith(Id c, const Exchange& exchange) const {
   return state;
 }
 
+// What no measure is better than: a limit is then asked for whatever was before.
+NodeMover::Shape NodeMover::bestShape() {
+  constexpr float most = std::numeric_limits<float>::max();
+  Shape best;
+  best.eta = best.cosWarpage = most;
+  return best;
+}
+
+NodeMover::Relation NodeMover::bestRelation() {
+  constexpr float most = std::numeric_limits<float>::max();
+  return {most, -most, most, most, most};
+}
+
 bool NodeMover::holdsWith(Exchange& exchange) const {
   const Id old = exchange.gone.front(), c = mesh_.owner[old];
   if (region_.cellSlot[c] == kNone || region_.isRim(c)) return false;
-  constexpr float most = std::numeric_limits<float>::max();
-  Shape best;  // a new face is better than nothing before it
-  best.eta = best.cosWarpage = most;
   for (std::size_t i = 0; i < exchange.rows.size(); ++i) {
     exchange.shapes.push_back(shapeOf(old, exchange.row(i)));
-    if (shapeRefuses(old, exchange.shapes[i], best) != Refusal::None) return false;
+    if (shapeRefuses(old, exchange.shapes[i], bestShape()) != Refusal::None) return false;
   }
   const CellState state = cellWith(c, exchange);
   if (cellRefuses(state, cell(c)) != Refusal::None) return false;
-  const Relation bestRelation{most, -most, most, most, most};
   for (std::size_t i = 0; i < exchange.rows.size(); ++i) {
     const Relation now = relationOf(old, exchange.row(i), exchange.shapes[i], state, nullptr);
-    if (angleRefuses(old, now, bestRelation) != Refusal::None) return false;
+    if (angleRefuses(old, now, bestRelation()) != Refusal::None) return false;
   }
   for (Id f : facesOfCell(c)) {
     if (exchange.takesOut(f)) continue;
@@ -116,6 +125,20 @@ bool NodeMover::holdsWith(Exchange& exchange) const {
     const CellMeasures& own = owns ? static_cast<const CellMeasures&>(state) : cell(mesh_.owner[f]);
     const Relation now = relationOf(f, mesh_.faces[f], face(f), own, other);
     if (angleRefuses(f, now, face(f)) != Refusal::None) return false;
+  }
+  return true;
+}
+
+bool NodeMover::holdsAround(Id p) const {
+  CellState best;
+  best.volume = best.minTet = best.minPyramid = best.determinant = std::numeric_limits<double>::max();
+  for (Id c : cellsOf(p)) {
+    if (cellRefuses(cell(c), best) != Refusal::None) return false;
+    if (region_.isRim(c)) continue;
+    for (Id f : facesOfCell(c))
+      if (shapeRefuses(f, face(f), bestShape()) != Refusal::None ||
+          angleRefuses(f, face(f), bestRelation()) != Refusal::None)
+        return false;
   }
   return true;
 }

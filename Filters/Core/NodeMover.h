@@ -90,6 +90,8 @@ class NodeMover {
     return attempt(points, targets, N, kAny) == Refusal::None;
   }
   bool improveTogether(const std::vector<Id>& points, const std::vector<Vec3>& targets);
+  /// Are all measures around p within the limits?
+  bool holdsAround(Id p) const;
   /// Would the limits hold if a wall face of a movable point were cut from one of its points to another? What
   /// is outside a limit already may not get worse. Thread-safe.
   bool cutHolds(const WallCut& cut) const;
@@ -156,6 +158,7 @@ class NodeMover {
   const Vec3& point(Id p) const { return mesh_.points[p]; }
   /// Of a movable point, else none.
   Span<Id> cellsOf(Id p) const { return isMovable(p) ? region_.pointCells[slot(p)] : Span<Id>(); }
+  Span<Id> facesOfCell(Id c) const { return region_.cellFaces[region_.cellSlot[c]]; }
   Span<Id> facesOf(Id p) const { return isMovable(p) ? region_.pointFaces[slot(p)] : Span<Id>(); }
   /// Of a cell of a movable point; the same for the faces and cells below.
   Span<Id> pointsOf(Id cell) const { return region_.cellPoints[region_.cellSlot[cell]]; }
@@ -245,6 +248,8 @@ class NodeMover {
   }
   CellState cellNow(Id c) const;
   CellState cellWith(Id c, const Exchange& exchange) const;
+  static Shape bestShape();
+  static Relation bestRelation();
   bool holdsWith(Exchange& exchange) const;
 
   Id slot(Id p) const { return region_.pointSlot[p]; }
@@ -252,7 +257,6 @@ class NodeMover {
   const FaceState& face(Id f) const { return faces_[region_.faceSlot[f]]; }
   CellState& cell(Id c) { return cells_[region_.cellSlot[c]]; }
   const CellState& cell(Id c) const { return cells_[region_.cellSlot[c]]; }
-  Span<Id> facesOfCell(Id c) const { return region_.cellFaces[region_.cellSlot[c]]; }
 
   PolyMesh& mesh_;
   const Monitor* monitor_;

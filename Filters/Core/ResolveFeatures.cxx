@@ -17,7 +17,7 @@
 namespace pm {
 namespace {
 
-constexpr int kPolishSweeps = 2;
+constexpr int kPolishSweeps = 2, kMergePasses = 2;
 
 /// The stage's state. Its mover and all that knows the wall's faces are made anew when faces are cut.
 class Resolver {
@@ -58,7 +58,8 @@ class Resolver {
   /// are undone before.
   void fit() {
     monitor_.check(0.85, "fitting faces");
-    merge(needlessCuts(*mover_, field_, [&](Id a, Id b) { return isOnFeature(a, b); }));
+    for (int pass = 0; pass < kMergePasses; ++pass)
+      merge(needlessCuts(*mover_, field_, [&](Id a, Id b) { return isOnFeature(a, b); }));
     cut(fittingCuts(*mover_, field_));
     fitWall(*mover_, wall_, field_, fitRoles());
   }
@@ -73,8 +74,14 @@ class Resolver {
   }
   void cut(const std::vector<WallCut>& cuts) {
     if (cuts.empty()) return;
-    cutWallFaces(mesh_, cuts);
+    for (const WallCut& c : cuts) snapper_->noteChange(mesh_.faces[c.face]);
+    const std::vector<WallCut> made = cutWallFaces(mesh_, cuts);
     renew();
+    for (;;) {
+      const std::vector<WallMerge> undo = cutsToUndo(*mover_, made);
+      if (undo.empty()) return;
+      merge(undo);
+    }
   }
   void merge(const std::vector<WallMerge>& merges) {
     if (merges.empty()) return;

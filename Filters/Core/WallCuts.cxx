@@ -2,6 +2,7 @@
 #include "WallCuts.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace pm {
 
@@ -60,12 +61,44 @@ WallMerge pairOf(const PolyMesh& mesh, Id first, Id second) {
   return {};
 }
 
+using PointPair = std::pair<Id, Id>;
+
+PointPair pairOf(const WallCut& cut) { return std::minmax(cut.a, cut.b); }
+
+/// Leaves out cuts along what is an edge of the boundary already, or that of an earlier cut: it would be in
+/// four faces.
+void dropKnownEdges(const PolyMesh& mesh, std::vector<WallCut>& cuts) {
+  std::vector<PointPair> known;
+  for (const WallCut& cut : cuts) known.push_back(pairOf(cut));
+  std::sort(known.begin(), known.end());
+  known.erase(std::unique(known.begin(), known.end()), known.end());
+  std::vector<char> isEdge(known.size(), 0);
+  const auto place = [&](const PointPair& pair) {
+    const auto it = std::lower_bound(known.begin(), known.end(), pair);
+    return it != known.end() && *it == pair ? it - known.begin() : -1;
+  };
+  for (Id f = mesh.internalFaces(); f < mesh.faceCount(); ++f) {
+    const Span<Id> row = mesh.faces[f];
+    for (std::size_t k = 0; k < row.size(); ++k)
+      if (const auto i = place(std::minmax(row[k], row[(k + 1) % row.size()])); i >= 0) isEdge[i] = 1;
+  }
+  const auto isKnown = [&](const WallCut& cut) {
+    char& is = isEdge[place(pairOf(cut))];
+    return std::exchange(is, 1) != 0;
+  };
+  cuts.erase(std::remove_if(cuts.begin(), cuts.end(), isKnown), cuts.end());
+}
+
 }  // namespace
 
-void cutWallFaces(PolyMesh& mesh, std::vector<WallCut> cuts) {
-  if (cuts.empty()) return;
+std::vector<WallCut> cutWallFaces(PolyMesh& mesh, std::vector<WallCut> cuts) {
   std::stable_sort(cuts.begin(), cuts.end(),
                    [](const WallCut& x, const WallCut& y) { return x.face < y.face; });
+  cuts.erase(std::unique(cuts.begin(), cuts.end(),
+                         [](const WallCut& x, const WallCut& y) { return x.face == y.face; }),
+             cuts.end());
+  dropKnownEdges(mesh, cuts);
+  if (cuts.empty()) return cuts;
   BoundaryRows rows(mesh);
   std::vector<Id> first, second;
   auto cut = cuts.begin();
@@ -80,6 +113,7 @@ void cutWallFaces(PolyMesh& mesh, std::vector<WallCut> cuts) {
     rows.add(i, first);
     rows.add(i, second);
   }
+  return cuts;
 }
 
 std::vector<WallMerge> wallPairs(const PolyMesh& mesh) {

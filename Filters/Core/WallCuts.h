@@ -21,8 +21,9 @@ struct WallCut {
 /// The two parts of a face: from a to b along the face, and from b to a.
 void cutRow(Span<Id> row, Id a, Id b, std::vector<Id>& first, std::vector<Id>& second);
 
-/// Cuts the faces, one cut a face at most (the first of several counts).
-void cutWallFaces(PolyMesh& mesh, std::vector<WallCut> cuts);
+/// Cuts the faces, one cut a face at most (the first of several counts), but not where the cut's edge is one
+/// of the boundary already. Returns the cuts made, ascending by face.
+std::vector<WallCut> cutWallFaces(PolyMesh& mesh, std::vector<WallCut> cuts);
 
 /// Two wall faces of one cell and one patch that share one edge and nothing else. `first` runs along it from
 /// b to a: the two are what a cut from a to b makes.

@@ -7,48 +7,17 @@
 #include <random>
 #include <set>
 
-#include "DummyLayer.h"
 #include "FoamQuality.h"
 #include "MoverMeasures.h"
 #include "NodeMover.h"
 #include "TestMeshes.h"
+#include "TestMoves.h"
 #include "TestRandomDomains.h"
 
 namespace {
 
 using namespace pm;
 using namespace pm::testing;
-
-/// The layer on the front of a random domain that is large enough to have an inside.
-PolyMesh layer(unsigned seed) {
-  Monitor monitor;
-  for (;; seed += 1000) {
-    PolyMesh front = repairedFront(randomDomain(seed, 1), false).mesh;
-    if (front.cellCount > 50) return dummyLayer(std::move(front), {}, monitor);
-  }
-}
-
-std::vector<Id> allPoints(const PolyMesh& mesh) {
-  std::vector<Id> all(mesh.points.size());
-  for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<Id>(i);
-  return all;
-}
-
-/// A few moves of every kind of each point, the same for the same mesh.
-void sweep(NodeMover& mover, const PolyMesh& mesh, const MoveBlocks& blocks) {
-  for (unsigned round = 0; round < 4; ++round)
-    mover.forEach(blocks, [&](Id p) {
-      std::mt19937_64 g(31 * static_cast<unsigned>(p) + round);
-      const Vec3 d = 0.3 * mesh.finestSize * randomPoint(g, -1, 1);
-      const Id base = mesh.base[p];
-      if (base != kNone && round % 2 == 0)
-        mover.moveTogether({p, base}, {mesh.points[p] + d, mesh.points[base] + 0.5 * d});
-      else if (round % 2 == 1)
-        mover.improve(p, mesh.points[p] + d);
-      else
-        mover.drift(p, mesh.points[p] + d);
-    });
-}
 
 TEST(NodeMover, OfSomePointsMovesThemAsOneOfAllPointsDoes) {
   std::size_t moved = 0, still = 0;
@@ -179,148 +148,6 @@ TEST(NodeMover, SkipsInBlocksOnlyWhatWouldFailAgain) {
   });
   EXPECT_GT(moved, 100);
   EXPECT_GT(skipped, 100);
-}
-
-/// A valid mesh whose points are not where a rule put them.
-PolyMesh shaken(unsigned seed) {
-  PolyMesh mesh = layer(seed);
-  NodeMover mover(mesh, {});
-  for (int k = 0; k < 3; ++k) sweep(mover, mesh, mover.blocks(allPoints(mesh)));
-  return mesh;
-}
-
-/// Every diagonal of every `nth` wall face.
-template <class Body>
-void forEachDiagonal(const PolyMesh& mesh, Id nth, const Body& body) {
-  for (Id f = mesh.internalFaces(); f < mesh.faceCount(); f += nth) {
-    if (!mesh.isWallPatch(mesh.patch[f - mesh.internalFaces()])) continue;
-    const Span<Id> row = mesh.faces[f];
-    for (std::size_t i = 0; i + 2 < row.size(); ++i)
-      for (std::size_t j = i + 2; j < row.size() && j < i + row.size() - 1; ++j)
-        body(WallCut{f, row[i], row[j]});
-  }
-}
-
-PolyMesh withCut(PolyMesh mesh, const WallCut& cut) {
-  cutWallFaces(mesh, {cut});
-  return mesh;
-}
-
-/// whatIsWrong(), and the limits on OpenFOAM's measures that the mover keeps too.
-std::string whatFoamRefuses(const PolyMesh& mesh, const QualityLimits& limits) {
-  std::string wrong = whatIsWrong(mesh, limits);
-  const MeshMeasures m = measure(mesh);
-  const Csr<Id> faces = cellFaces(mesh);
-  const double minTet = limits.minTet * std::pow(mesh.finestSize, 3);
-  for (Id c = 0; c < mesh.cellCount; ++c) {
-    std::vector<Vec3> areas;
-    for (Id f : faces[c])
-      if (f < mesh.internalFaces()) areas.push_back(m.faces[f].normal);
-    if (!(cellDeterminant(areas.data(), areas.size()) >= limits.minDeterminant)) wrong += "A determinant. ";
-  }
-  for (Id f = 0; f < mesh.faceCount(); ++f) {
-    const CellMeasures& own = m.cells[mesh.owner[f]];
-    const CellMeasures* next = f < mesh.internalFaces() ? &m.cells[mesh.neighbour[f]] : nullptr;
-    if (!(faceTetVolume(mesh.points, mesh.faces[f], m.faces[f], own.foamCentre,
-                        next ? &next->foamCentre : nullptr, minTet) >= minTet))
-      wrong += "A decomposition tetrahedron. ";
-    if (next == nullptr) continue;
-    if (!(faceWeight(m.faces[f], own.foamCentre, next->foamCentre) >= limits.minFaceWeight))
-      wrong += "A weight. ";
-    if (!(volumeRatio(own.volume, next->volume) >= limits.minVolumeRatio)) wrong += "A volume ratio. ";
-  }
-  return wrong;
-}
-
-TEST(NodeMover, SaysOfACutWhetherTheMeshStaysValid) {
-  std::size_t holding = 0, breaking = 0;
-  for (unsigned seed = 0; seed < 40; ++seed) {
-    PolyMesh mesh = seed % 2 == 0 ? layer(seed) : shaken(seed);
-    QualityLimits limits;
-    limits.minTet = 1e-5;  // more than the mover's own, so that both judge alike
-    if (seed % 4 > 1) limits.maxSkewBoundary = 1.2;
-    if (whatFoamRefuses(mesh, limits) != "") continue;
-    const NodeMover mover(mesh, limits, pointsNearWall(mesh, 0));
-    forEachDiagonal(mesh, 7, [&](const WallCut& cut) {
-      const bool holds = mover.cutHolds(cut);
-      const std::string wrong = whatFoamRefuses(withCut(mesh, cut), limits);
-      EXPECT_EQ(holds, wrong.empty()) << "domain " << seed << ", face " << cut.face << ": " << wrong;
-      ++(holds ? holding : breaking);
-    });
-  }
-  EXPECT_GT(holding, 200u);
-  EXPECT_GT(breaking, 50u);
-}
-
-/// One cut a wall face at most.
-void cutWhereItHolds(PolyMesh& mesh, const QualityLimits& limits) {
-  const NodeMover mover(mesh, limits, pointsNearWall(mesh, 0));
-  std::vector<WallCut> cuts;
-  forEachDiagonal(mesh, 1, [&](const WallCut& cut) {
-    if (mover.cutHolds(cut)) cuts.push_back(cut);
-  });
-  cutWallFaces(mesh, cuts);
-}
-
-TEST(NodeMover, SaysOfAMergeWhetherTheMeshStaysValid) {
-  std::size_t holding = 0, breaking = 0;
-  for (unsigned seed = 0; seed < 40; ++seed) {
-    PolyMesh mesh = seed % 2 == 0 ? layer(seed) : shaken(seed);
-    QualityLimits limits;
-    limits.minTet = 1e-5;
-    cutWhereItHolds(mesh, limits);
-    // No more than the faces have now: two halves may keep it and the whole not.
-    limits.maxWarpage = summarise(mesh, measure(mesh), limits).maxWarpage * (1 + 1e-6);
-    if (whatFoamRefuses(mesh, limits) != "") continue;
-    const NodeMover mover(mesh, limits, pointsNearWall(mesh, 0));
-    for (const WallMerge& merge : wallPairs(mesh)) {
-      PolyMesh merged = mesh;
-      mergeWallFaces(merged, {merge});
-      const std::string wrong = whatFoamRefuses(merged, limits);
-      const bool holds = mover.mergeHolds(merge);
-      EXPECT_EQ(holds, wrong.empty()) << "domain " << seed << ", face " << merge.first << ": " << wrong;
-      ++(holds ? holding : breaking);
-    }
-  }
-  EXPECT_GT(holding, 50u);
-  EXPECT_GT(breaking, 5u);
-}
-
-TEST(NodeMover, CutsAddNoViolationWhereLimitsAreBrokenAlready) {
-  QualityLimits strict;
-  strict.maxAngleInternal = 35;
-  strict.maxSkewInternal = 0.5;
-  const auto violations = [&](const PolyMesh& mesh) {
-    return summarise(mesh, measure(mesh), strict).violations;
-  };
-  std::size_t holding = 0;
-  for (unsigned seed = 0; seed < 20; ++seed) {
-    PolyMesh mesh = shaken(seed);
-    const Id before = violations(mesh);
-    ASSERT_GT(before, 0);
-    const NodeMover mover(mesh, strict, pointsNearWall(mesh, 0));
-    forEachDiagonal(mesh, 1, [&](const WallCut& cut) {
-      if (!mover.cutHolds(cut)) return;
-      ++holding;
-      EXPECT_LE(violations(withCut(mesh, cut)), before) << "domain " << seed << ", face " << cut.face;
-    });
-  }
-  EXPECT_GT(holding, 50u);
-}
-
-TEST(NodeMover, SaysNoOfCutsAwayFromItsPoints) {
-  PolyMesh mesh = layer(5);
-  const Id away = mesh.faces[mesh.faceCount() - 1][0];
-  const NodeMover mover(mesh, {}, std::vector<Id>{away});
-  std::size_t near = 0;
-  forEachDiagonal(mesh, 1, [&](const WallCut& cut) {
-    const Span<Id> cells = mover.cellsOf(away);
-    if (std::find(cells.begin(), cells.end(), mesh.owner[cut.face]) != cells.end())
-      ++near;
-    else
-      EXPECT_FALSE(mover.cutHolds(cut));
-  });
-  EXPECT_GT(near, 0u);
 }
 
 /// Forces a point somewhere and mends around it as well as a few random steps can.

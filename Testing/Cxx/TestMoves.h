@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Random valid meshes with a layer of prisms, and moves of their points.
+#pragma once
+
+#include "NodeMover.h"
+
+namespace pm::testing {
+
+/// The layer on the front of a random domain that is large enough to have an inside.
+PolyMesh layer(unsigned seed);
+/// The same when its points are no longer where a rule put them.
+PolyMesh shaken(unsigned seed);
+
+std::vector<Id> allPoints(const PolyMesh& mesh);
+/// A few moves of every kind of each point, the same for the same mesh.
+void sweep(NodeMover& mover, const PolyMesh& mesh, const MoveBlocks& blocks);
+
+}  // namespace pm::testing

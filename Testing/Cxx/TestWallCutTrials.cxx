@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Cuts and merges of wall faces that are tried before they are made: does the mesh stay valid?
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "FittingCuts.h"
+#include "FoamQuality.h"
+#include "NodeMover.h"
+#include "TestMeshes.h"
+#include "TestMoves.h"
+#include "TestRandomDomains.h"
+
+namespace {
+
+using namespace pm;
+using namespace pm::testing;
+
+/// Every diagonal of every `nth` wall face.
+template <class Body>
+void forEachDiagonal(const PolyMesh& mesh, Id nth, const Body& body) {
+  for (Id f = mesh.internalFaces(); f < mesh.faceCount(); f += nth) {
+    if (!mesh.isWallPatch(mesh.patch[f - mesh.internalFaces()])) continue;
+    const Span<Id> row = mesh.faces[f];
+    for (std::size_t i = 0; i + 2 < row.size(); ++i)
+      for (std::size_t j = i + 2; j < row.size() && j < i + row.size() - 1; ++j)
+        body(WallCut{f, row[i], row[j]});
+  }
+}
+
+PolyMesh withCut(PolyMesh mesh, const WallCut& cut) {
+  cutWallFaces(mesh, {cut});
+  return mesh;
+}
+
+/// whatIsWrong(), and the limits on OpenFOAM's measures that the mover keeps too.
+std::string whatFoamRefuses(const PolyMesh& mesh, const QualityLimits& limits) {
+  std::string wrong = whatIsWrong(mesh, limits);
+  const MeshMeasures m = measure(mesh);
+  const Csr<Id> faces = cellFaces(mesh);
+  const double minTet = limits.minTet * std::pow(mesh.finestSize, 3);
+  for (Id c = 0; c < mesh.cellCount; ++c) {
+    std::vector<Vec3> areas;
+    for (Id f : faces[c])
+      if (f < mesh.internalFaces()) areas.push_back(m.faces[f].normal);
+    if (!(cellDeterminant(areas.data(), areas.size()) >= limits.minDeterminant)) wrong += "A determinant. ";
+  }
+  for (Id f = 0; f < mesh.faceCount(); ++f) {
+    const CellMeasures& own = m.cells[mesh.owner[f]];
+    const CellMeasures* next = f < mesh.internalFaces() ? &m.cells[mesh.neighbour[f]] : nullptr;
+    if (!(faceTetVolume(mesh.points, mesh.faces[f], m.faces[f], own.foamCentre,
+                        next ? &next->foamCentre : nullptr, minTet) >= minTet))
+      wrong += "A decomposition tetrahedron. ";
+    if (next == nullptr) continue;
+    if (!(faceWeight(m.faces[f], own.foamCentre, next->foamCentre) >= limits.minFaceWeight))
+      wrong += "A weight. ";
+    if (!(volumeRatio(own.volume, next->volume) >= limits.minVolumeRatio)) wrong += "A volume ratio. ";
+  }
+  return wrong;
+}
+
+TEST(WallCutTrials, SaysOfACutWhetherTheMeshStaysValid) {
+  std::size_t holding = 0, breaking = 0;
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    PolyMesh mesh = seed % 2 == 0 ? layer(seed) : shaken(seed);
+    QualityLimits limits;
+    limits.minTet = 1e-5;  // more than the mover's own, so that both judge alike
+    if (seed % 4 > 1) limits.maxSkewBoundary = 1.2;
+    if (whatFoamRefuses(mesh, limits) != "") continue;
+    const NodeMover mover(mesh, limits, pointsNearWall(mesh, 0));
+    forEachDiagonal(mesh, 7, [&](const WallCut& cut) {
+      const bool holds = mover.cutHolds(cut);
+      const std::string wrong = whatFoamRefuses(withCut(mesh, cut), limits);
+      EXPECT_EQ(holds, wrong.empty()) << "domain " << seed << ", face " << cut.face << ": " << wrong;
+      ++(holds ? holding : breaking);
+    });
+  }
+  EXPECT_GT(holding, 200u);
+  EXPECT_GT(breaking, 50u);
+}
+
+/// One cut a wall face at most.
+void cutWhereItHolds(PolyMesh& mesh, const QualityLimits& limits) {
+  const NodeMover mover(mesh, limits, pointsNearWall(mesh, 0));
+  std::vector<WallCut> cuts;
+  forEachDiagonal(mesh, 1, [&](const WallCut& cut) {
+    if (mover.cutHolds(cut)) cuts.push_back(cut);
+  });
+  cutWallFaces(mesh, cuts);
+}
+
+TEST(WallCutTrials, CutsThatHoldOneByOneHoldTogether) {
+  std::size_t cuts = 0;
+  for (unsigned seed = 0; seed < 80; ++seed) {  // in 55 two faces share two points across
+    PolyMesh mesh = seed % 2 == 0 ? layer(seed) : shaken(seed);
+    const QualitySummary now = summarise(mesh, measure(mesh), {});
+    QualityLimits limits;
+    limits.minTet = 1e-5;
+    if (seed % 4 > 1) limits.maxSkewBoundary = 1.2;
+    if (seed % 3 == 0) limits.maxAngleInternal = now.maxAngleInternal * (1 + 1e-6);
+    if (seed % 3 == 1) limits.maxAngleBoundary = now.maxAngleBoundary * (1 + 1e-6);
+    if (whatFoamRefuses(mesh, limits) != "") continue;
+    const Id before = mesh.faceCount();
+    cutWhereItHolds(mesh, limits);
+    cuts += mesh.faceCount() - before;
+    EXPECT_EQ(whatFoamRefuses(mesh, limits), "") << "domain " << seed;
+  }
+  EXPECT_GT(cuts, 1000u);
+}
+
+TEST(WallCutTrials, CutsThatDoNotHoldAreFoundAndUndone) {
+  std::size_t undone = 0, kept = 0;
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    const PolyMesh whole = shaken(seed);
+    QualityLimits limits;
+    limits.minTet = 1e-5;
+    limits.maxSkewBoundary = 1.2;
+    if (whatFoamRefuses(whole, limits) != "") continue;
+    PolyMesh mesh = whole;
+    std::vector<WallCut> cuts;
+    forEachDiagonal(mesh, 12, [&](const WallCut& cut) { cuts.push_back(cut); });
+    cuts = cutWallFaces(mesh, cuts);
+    std::size_t left = cuts.size();
+    for (;;) {
+      const NodeMover mover(mesh, limits, pointsNearWall(mesh, 1));
+      const std::vector<WallMerge> undo = cutsToUndo(mover, cuts);
+      if (undo.empty()) break;
+      const Id before = mesh.faceCount();
+      mergeWallFaces(mesh, undo);
+      ASSERT_LT(mesh.faceCount(), before);
+      left -= before - mesh.faceCount();
+    }
+    EXPECT_EQ(whatFoamRefuses(mesh, limits), "") << "domain " << seed;
+    undone += cuts.size() - left;
+    kept += left;
+  }
+  EXPECT_GT(undone, 10u);
+  EXPECT_GT(kept, 5u);
+}
+
+TEST(WallCutTrials, SaysOfAMergeWhetherTheMeshStaysValid) {
+  std::size_t holding = 0, breaking = 0;
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    PolyMesh mesh = seed % 2 == 0 ? layer(seed) : shaken(seed);
+    QualityLimits limits;
+    limits.minTet = 1e-5;
+    cutWhereItHolds(mesh, limits);
+    // No more than the faces have now: two halves may keep it and the whole not.
+    limits.maxWarpage = summarise(mesh, measure(mesh), limits).maxWarpage * (1 + 1e-6);
+    if (whatFoamRefuses(mesh, limits) != "") continue;
+    const NodeMover mover(mesh, limits, pointsNearWall(mesh, 0));
+    for (const WallMerge& merge : wallPairs(mesh)) {
+      PolyMesh merged = mesh;
+      mergeWallFaces(merged, {merge});
+      const std::string wrong = whatFoamRefuses(merged, limits);
+      const bool holds = mover.mergeHolds(merge);
+      EXPECT_EQ(holds, wrong.empty()) << "domain " << seed << ", face " << merge.first << ": " << wrong;
+      ++(holds ? holding : breaking);
+    }
+  }
+  EXPECT_GT(holding, 50u);
+  EXPECT_GT(breaking, 5u);
+}
+
+TEST(WallCutTrials, CutsAddNoViolationWhereLimitsAreBrokenAlready) {
+  QualityLimits strict;
+  strict.maxAngleInternal = 35;
+  strict.maxSkewInternal = 0.5;
+  const auto violations = [&](const PolyMesh& mesh) {
+    return summarise(mesh, measure(mesh), strict).violations;
+  };
+  std::size_t holding = 0;
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    PolyMesh mesh = shaken(seed);
+    const Id before = violations(mesh);
+    ASSERT_GT(before, 0);
+    const NodeMover mover(mesh, strict, pointsNearWall(mesh, 0));
+    forEachDiagonal(mesh, 1, [&](const WallCut& cut) {
+      if (!mover.cutHolds(cut)) return;
+      ++holding;
+      EXPECT_LE(violations(withCut(mesh, cut)), before) << "domain " << seed << ", face " << cut.face;
+    });
+  }
+  EXPECT_GT(holding, 50u);
+}
+
+TEST(WallCutTrials, SaysNoOfCutsAwayFromItsPoints) {
+  PolyMesh mesh = layer(5);
+  const Id away = mesh.faces[mesh.faceCount() - 1][0];
+  const NodeMover mover(mesh, {}, std::vector<Id>{away});
+  std::size_t near = 0;
+  forEachDiagonal(mesh, 1, [&](const WallCut& cut) {
+    const Span<Id> cells = mover.cellsOf(away);
+    if (std::find(cells.begin(), cells.end(), mesh.owner[cut.face]) != cells.end())
+      ++near;
+    else
+      EXPECT_FALSE(mover.cutHolds(cut));
+  });
+  EXPECT_GT(near, 0u);
+}
+
+}  // namespace
