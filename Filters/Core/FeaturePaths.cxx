@@ -120,13 +120,13 @@ class PathFinder {
   FeaturePaths result_;
 };
 
-/// A node on a domain side can only lie where the feature meets that side.
+/// A node on a domain side can only lie where the feature meets that side; none goes through the geometry.
 bool PathFinder::reachable(Id row, const Vec3& target) const {
   const Id p = wall_.nodes[row];
   const std::uint8_t fixed = mesh_.fixed.empty() ? 0 : mesh_.fixed[p];
   for (int a = 0; a < 3; ++a)
     if ((fixed >> a & 1) && std::abs(target[a] - mesh_.points[p][a]) > 0.05 * wall_.scale[row]) return false;
-  return true;
+  return !options_.sees || options_.sees(p, target);
 }
 
 // A path can go around a node that missed, a corner has few others to take.

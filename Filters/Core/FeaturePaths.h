@@ -54,6 +54,8 @@ struct FeaturePathOptions {
   double shortest = 0.5;      ///< open curves below this many length scales are not traced
   double shortestLoop = 2.5;  ///< the same for closed curves
   double spacing = 0.35;      ///< nodes on a curve keep this many length scales, where the curve has room
+  std::function<bool(Id node, const Vec3& place)>
+      sees;  ///< is the place on the node's side of the geometry? Empty: all are
   std::function<bool(const WallCut&)>
       canCut;  ///< may a path cross this face? Empty: paths keep to wall edges
 };

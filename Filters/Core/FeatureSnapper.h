@@ -4,7 +4,7 @@
 //
 // A node that cannot reach its target alone takes the lower end of its prism edge along. The representative
 // points (eq 4-20) that a move takes along may be as far from the geometry as before, or a tenth of the
-// length scale; half of it when the node reaches its feature, since its neighbours follow in the next
+// length scale; 0.7 of it when the node reaches its feature, since its neighbours follow in the next
 // smoothing. A refused move is tried again only after something around it has moved.
 #pragma once
 
@@ -50,7 +50,7 @@ class FeatureSnapper {
   enum class Role : std::uint8_t { Outside, Free, Curve, Corner };
   // In length scales: how far a face may leave the geometry when a node reaches a feature (its neighbours
   // follow: a tight limit here leaves them all behind), goes part of the way, is smoothed.
-  static constexpr double kSnapTolerance = 0.5, kDriftTolerance = 0.1, kSmoothTolerance = 0.02;
+  static constexpr double kSnapTolerance = 0.7, kDriftTolerance = 0.1, kSmoothTolerance = 0.02;
 
   bool reached(Id row) const;
   double distance(Id row) const;

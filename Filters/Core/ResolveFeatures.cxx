@@ -90,6 +90,7 @@ class Resolver {
   }
   void setTargets(const PathHistory& history) {
     FeaturePathOptions options;
+    options.sees = [&](Id p, const Vec3& place) { return sees(p, place); };
     options.canCut = [&](const WallCut& c) { return mover_->cutHolds(c); };
     const FeaturePaths paths = traceFeatures(mesh_, wall_, graph_, options, history);
     cut(paths.cuts);
@@ -97,6 +98,7 @@ class Resolver {
   }
   std::vector<FitRole> fitRoles() const;
   bool isOnFeature(Id a, Id b) const;
+  bool sees(Id p, const Vec3& place) const;
 
   PolyMesh& mesh_;
   const DistanceField& field_;
@@ -128,6 +130,16 @@ std::vector<FitRole> Resolver::fitRoles() const {
     roles[row] = on.distance2 <= std::pow(kOn * wall_.scale[row], 2) ? FitRole::Keep : FitRole::Search;
   });
   return roles;
+}
+
+// Seen from the lower end of the prism edge: sheets and walls of parts that touch have features behind them.
+bool Resolver::sees(Id p, const Vec3& place) const {
+  constexpr double kThrough = 0.15;  // finest cells that may be left to the place where the geometry is met
+  if (mesh_.base[p] == kNone) return true;
+  const Vec3& from = mesh_.points[mesh_.base[p]];
+  const Vec3 way = place - from;
+  const double length = way.norm(), open = length - kThrough * mesh_.finestSize;
+  return open <= 0 || !field_.model().crosses(from, from + open / length * way);
 }
 
 /// Does the wall edge between two points lie along a feature?

@@ -267,4 +267,21 @@ std::vector<Id> SurfaceModel::trianglesNear(const Box& box) const {
   return found;
 }
 
+bool SurfaceModel::crosses(const Vec3& p, const Vec3& q) const {
+  constexpr double kEdge = 1e-9;  // barycentric: no way through between two triangles
+  Box path;
+  path.add(p);
+  path.add(q);
+  const Vec3 way = q - p;
+  const auto crossesSlot = [&](Id slot) {
+    const Hierarchy::Corners& t = tree_->slots[slot];
+    const Vec3 ab = t.b - t.a, ac = t.c - t.a, ap = p - t.a, n = ab.cross(ac), e = ap.cross(way);
+    const double slope = -way.dot(n), reach = ap.dot(n) / slope;
+    if (!(reach >= 0 && reach <= 1)) return false;
+    const double v = ac.dot(e) / slope, w = -ab.dot(e) / slope;
+    return v >= -kEdge && w >= -kEdge && v + w <= 1 + kEdge;
+  };
+  return tree_->bvh.any([&](Id, const Box& box) { return box.overlaps(path); }, crossesSlot);
+}
+
 }  // namespace pm

@@ -55,6 +55,8 @@ class SurfaceModel {
   Closest closestOnTriangle(const Vec3& p, Id triangle) const;
   /// Ids of the triangles whose boxes overlap the box, ascending.
   std::vector<Id> trianglesNear(const Box& box) const;
+  /// Does a triangle cross the segment, to rounding? Thread-safe.
+  bool crosses(const Vec3& p, const Vec3& q) const;
   /// The tree over the triangles' boxes, for searches of one's own.
   const Bvh& hierarchy() const;
 

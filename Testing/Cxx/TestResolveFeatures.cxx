@@ -347,6 +347,23 @@ void expectResolved(const Soup& shape, double size, Id corners, double share = 0
   EXPECT_LE(missed, 1);
 }
 
+TEST(ResolveFeatures, EdgesBehindAWallDoNotDentIt) {
+  constexpr double cell = 0.1, edge = 2;
+  Soup room = cube();
+  const Id patch = static_cast<Id>(room.names.size());
+  room.names.push_back("rib");
+  for (double z : {-0.63, -0.2, 0.27}) {  // ribs on the wall's outer side, open towards it, 0.4 cells high
+    const double low = edge / 2 + 0.002, high = edge / 2 + 0.4 * cell;
+    const Vec3 a(low, -0.7, z), b(high, -0.7, z), c(high, 0.7, z), d(low, 0.7, z), up(0, 0, 0.2);
+    room.quad(a, b, c, d, patch);
+    room.quad(b, b + up, c + up, c, patch);
+    room.quad(a + up, b + up, c + up, d + up, patch);
+  }
+  const Resolved r = resolve(room, cell);
+  expectValid(r.mesh);
+  for (const Vec3& p : r.mesh.points) EXPECT_LT(p.cwiseAbs().maxCoeff(), edge / 2 + 0.1 * cell);
+}
+
 TEST(ResolveFeatures, RotatedCube) { expectResolved(cube(), 2. / 25, 8); }
 TEST(ResolveFeatures, RotatedBlock) { expectResolved(block(), 1. / 25, 12); }
 TEST(ResolveFeatures, RotatedCylinder) { expectResolved(cylinder(64), 2. / 25, 0); }

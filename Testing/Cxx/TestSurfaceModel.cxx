@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "SurfaceModel.h"
 #include "TestSurfaces.h"
@@ -227,6 +228,30 @@ INSTANTIATE_TEST_SUITE_P(Placements, SurfaceModelAt,
                          ::testing::Values(Placement{1, {0, 0, 0}}, Placement{1e-30, {0, 0, 0}},
                                            Placement{1e30, {0, 0, 0}}, Placement{1, {5e5, 4.8e6, 100}},
                                            Placement{1e-3, {5e5, 4.8e6, 100}}, Placement{1e5, {-1e5, 0, 3}}));
+
+TEST(SurfaceModel, CrossesEqualsBruteForce) {
+  std::mt19937_64 g(5);
+  const auto model = randomSoup(40, 0.5, 5).model();
+  // The ends on different sides of the plane, and the segment's line on the inner side of all three edges.
+  const auto crossesOne = [&](const Vec3& p, const Vec3& q, Id t) {
+    const auto side = [](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+      return (b - a).cross(c - a).dot(d - a) > 0;
+    };
+    const Vec3 &a = model->corner(t, 0), &b = model->corner(t, 1), &c = model->corner(t, 2);
+    const bool x = side(p, q, a, b);
+    return side(a, b, c, p) != side(a, b, c, q) && x == side(p, q, b, c) && x == side(p, q, c, a);
+  };
+  int crossing = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const Vec3 p = randomPoint(g, -1, 1), q = p + randomPoint(g, -0.5, 0.5);
+    bool any = false;
+    for (Id t = 0; t < model->triangleCount(); ++t) any = any || crossesOne(p, q, t);
+    ASSERT_EQ(model->crosses(p, q), any) << k;
+    crossing += any;
+  }
+  EXPECT_GT(crossing, 100);
+  EXPECT_LT(crossing, 1900);
+}
 
 TEST(SurfaceModel, TiesGoToTheSmallestTriangle) {
   const auto model = cube(3).mapped([](const Vec3& p) { return Vec3(p + Vec3(0.1, 0.2, 0.3)); }).model();
