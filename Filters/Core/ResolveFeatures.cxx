@@ -17,7 +17,7 @@
 namespace pm {
 namespace {
 
-constexpr int kPolishSweeps = 2, kMergePasses = 2;
+constexpr int kPolishSweeps = 2;
 
 /// The stage's state. Its mover and all that knows the wall's faces are made anew when faces are cut.
 class Resolver {
@@ -58,8 +58,12 @@ class Resolver {
   /// are undone before.
   void fit() {
     monitor_.check(0.85, "fitting faces");
-    for (int pass = 0; pass < kMergePasses; ++pass)
-      merge(needlessCuts(*mover_, field_, [&](Id a, Id b) { return isOnFeature(a, b); }));
+    for (;;) {
+      const auto isKept = [&](Id a, Id b) { return isOnFeature(a, b); };
+      const std::vector<WallMerge> merges = needlessCuts(*mover_, field_, isKept);
+      if (merges.empty()) break;
+      merge(merges);
+    }
     cut(fittingCuts(*mover_, field_));
     fitWall(*mover_, wall_, field_, fitRoles());
   }
@@ -84,7 +88,6 @@ class Resolver {
     }
   }
   void merge(const std::vector<WallMerge>& merges) {
-    if (merges.empty()) return;
     mergeWallFaces(mesh_, merges);
     renew();
   }

@@ -104,7 +104,13 @@ TEST(FittingCuts, ThoseThatBringNothingAreUndone) {
     DistanceField field(*model, 1);
     cutWallFaces(mesh, allCuts(mesh, along));
     EXPECT_TRUE(needlessCuts(NodeMover(mesh, {}), field, [](Id, Id) { return true; }).empty());
-    mergeWallFaces(mesh, needlessCuts(NodeMover(mesh, {}), field, [](Id, Id) { return false; }));
+    for (;;) {
+      const std::vector<WallMerge> merges =
+          needlessCuts(NodeMover(mesh, {}), field, [](Id, Id) { return false; });
+      if (merges.empty()) break;
+      EXPECT_LE(merges.size(), 8u) << "of 16 squares no two side by side";
+      mergeWallFaces(mesh, merges);
+    }
     // Of the 16 cuts only the four on the ridge bring faces nearer; across it all are in vain.
     EXPECT_EQ(mesh.boundaryFaces(), uncut + (along ? 4 : 0));
     EXPECT_EQ(whatIsWrong(mesh), "");
