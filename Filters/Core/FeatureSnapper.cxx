@@ -22,7 +22,7 @@ FeatureSnapper::FeatureSnapper(NodeMover& mover, const WallSurface& wall, const 
   changed_.assign(mesh_.points.size(), 1);
   innerTried_.assign(mesh_.points.size(), 0);
   smoothTried_.assign(wall.nodes.size(), 0);
-  settleTried_ = smoothTried_;
+  snapTried_ = forceTried_ = settleTried_ = smoothTried_;
   isBase_.assign(mesh_.points.size(), 0);
   for (Id p : wall.nodes)
     if (mesh_.base[p] != kNone) isBase_[mesh_.base[p]] = 1;
@@ -43,7 +43,6 @@ void FeatureSnapper::setTargets(const FeaturePaths& paths) {
     curve_[row] = t.curve;
     corner_[row] = t.corner;
   }
-  for (std::vector<Id>* tried : {&snapTried_, &forceTried_}) tried->resize(n, 0);
   // What failed fails again unless something has changed.
   for (std::size_t row = 0; row < roleBefore.size(); ++row)
     if (role_[row] != roleBefore[row] || target_[row] != targetBefore[row])

@@ -71,6 +71,13 @@ class CutChooser {
   const DistanceField& field_;
 };
 
+/// Is one of the cells beside the faces marked?
+bool isBeside(const PolyMesh& mesh, Span<Id> faces, const std::vector<char>& marked) {
+  return std::any_of(faces.begin(), faces.end(), [&](Id f) {
+    return marked[mesh.owner[f]] || (f < mesh.internalFaces() && marked[mesh.neighbour[f]]);
+  });
+}
+
 }  // namespace
 
 std::vector<WallCut> fittingCuts(const NodeMover& mover, const DistanceField& field) {
@@ -84,18 +91,6 @@ std::vector<WallCut> fittingCuts(const NodeMover& mover, const DistanceField& fi
              cuts.end());
   return cuts;
 }
-
-namespace {
-
-/// Is one of the cells beside the faces marked?
-template <class Faces>
-bool isBeside(const PolyMesh& mesh, const Faces& faces, const std::vector<char>& marked) {
-  return std::any_of(faces.begin(), faces.end(), [&](Id f) {
-    return marked[mesh.owner[f]] || (f < mesh.internalFaces() && marked[mesh.neighbour[f]]);
-  });
-}
-
-}  // namespace
 
 std::vector<WallMerge> needlessCuts(const NodeMover& mover, const DistanceField& field,
                                     const std::function<bool(Id, Id)>& isOnFeature) {

@@ -58,8 +58,8 @@ class Resolver {
   /// are undone before.
   void fit() {
     monitor_.check(0.85, "fitting faces");
+    const auto isKept = [&](Id a, Id b) { return isOnFeature(a, b); };
     for (;;) {
-      const auto isKept = [&](Id a, Id b) { return isOnFeature(a, b); };
       const std::vector<WallMerge> merges = needlessCuts(*mover_, field_, isKept);
       if (merges.empty()) break;
       merge(merges);

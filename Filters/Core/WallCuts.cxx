@@ -61,21 +61,21 @@ WallMerge pairOf(const PolyMesh& mesh, Id first, Id second) {
   return {};
 }
 
-using PointPair = std::pair<Id, Id>;
+using Edge = std::pair<Id, Id>;
 
-PointPair pairOf(const WallCut& cut) { return std::minmax(cut.a, cut.b); }
+Edge edgeOf(const WallCut& cut) { return std::minmax(cut.a, cut.b); }
 
 /// Leaves out cuts along what is an edge of the boundary already, or that of an earlier cut: it would be in
 /// four faces.
 void dropKnownEdges(const PolyMesh& mesh, std::vector<WallCut>& cuts) {
-  std::vector<PointPair> known;
-  for (const WallCut& cut : cuts) known.push_back(pairOf(cut));
+  std::vector<Edge> known;
+  for (const WallCut& cut : cuts) known.push_back(edgeOf(cut));
   std::sort(known.begin(), known.end());
   known.erase(std::unique(known.begin(), known.end()), known.end());
   std::vector<char> isEdge(known.size(), 0);
-  const auto place = [&](const PointPair& pair) {
-    const auto it = std::lower_bound(known.begin(), known.end(), pair);
-    return it != known.end() && *it == pair ? it - known.begin() : -1;
+  const auto place = [&](const Edge& edge) {
+    const auto it = std::lower_bound(known.begin(), known.end(), edge);
+    return it != known.end() && *it == edge ? it - known.begin() : -1;
   };
   for (Id f = mesh.internalFaces(); f < mesh.faceCount(); ++f) {
     const Span<Id> row = mesh.faces[f];
@@ -83,7 +83,7 @@ void dropKnownEdges(const PolyMesh& mesh, std::vector<WallCut>& cuts) {
       if (const auto i = place(std::minmax(row[k], row[(k + 1) % row.size()])); i >= 0) isEdge[i] = 1;
   }
   const auto isKnown = [&](const WallCut& cut) {
-    char& is = isEdge[place(pairOf(cut))];
+    char& is = isEdge[place(edgeOf(cut))];
     return std::exchange(is, 1) != 0;
   };
   cuts.erase(std::remove_if(cuts.begin(), cuts.end(), isKnown), cuts.end());
@@ -92,13 +92,13 @@ void dropKnownEdges(const PolyMesh& mesh, std::vector<WallCut>& cuts) {
 }  // namespace
 
 std::vector<WallCut> cutWallFaces(PolyMesh& mesh, std::vector<WallCut> cuts) {
+  if (cuts.empty()) return cuts;
   std::stable_sort(cuts.begin(), cuts.end(),
                    [](const WallCut& x, const WallCut& y) { return x.face < y.face; });
   cuts.erase(std::unique(cuts.begin(), cuts.end(),
                          [](const WallCut& x, const WallCut& y) { return x.face == y.face; }),
              cuts.end());
   dropKnownEdges(mesh, cuts);
-  if (cuts.empty()) return cuts;
   BoundaryRows rows(mesh);
   std::vector<Id> first, second;
   auto cut = cuts.begin();

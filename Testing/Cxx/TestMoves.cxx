@@ -23,19 +23,22 @@ std::vector<Id> allPoints(const PolyMesh& mesh) {
   return all;
 }
 
+void randomMove(NodeMover& mover, const PolyMesh& mesh, Id p, unsigned seed, unsigned kind) {
+  std::mt19937_64 g(seed);
+  const Vec3 d = 0.3 * mesh.finestSize * randomPoint(g, -1, 1);
+  const Id base = mesh.base[p];
+  if (base != kNone && kind == 0)
+    mover.moveTogether({p, base}, {mesh.points[p] + d, mesh.points[base] + 0.5 * d});
+  else if (kind == 1)
+    mover.improve(p, mesh.points[p] + d);
+  else
+    mover.drift(p, mesh.points[p] + d);
+}
+
 void sweep(NodeMover& mover, const PolyMesh& mesh, const MoveBlocks& blocks) {
   for (unsigned round = 0; round < 4; ++round)
-    mover.forEach(blocks, [&](Id p) {
-      std::mt19937_64 g(31 * static_cast<unsigned>(p) + round);
-      const Vec3 d = 0.3 * mesh.finestSize * randomPoint(g, -1, 1);
-      const Id base = mesh.base[p];
-      if (base != kNone && round % 2 == 0)
-        mover.moveTogether({p, base}, {mesh.points[p] + d, mesh.points[base] + 0.5 * d});
-      else if (round % 2 == 1)
-        mover.improve(p, mesh.points[p] + d);
-      else
-        mover.drift(p, mesh.points[p] + d);
-    });
+    mover.forEach(
+        blocks, [&](Id p) { randomMove(mover, mesh, p, 31 * static_cast<unsigned>(p) + round, round % 2); });
 }
 
 PolyMesh shaken(unsigned seed) {

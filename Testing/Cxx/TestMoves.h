@@ -12,6 +12,9 @@ PolyMesh layer(unsigned seed);
 PolyMesh shaken(unsigned seed);
 
 std::vector<Id> allPoints(const PolyMesh& mesh);
+/// A move of a point that depends on the seed alone: kind 0 takes its base along, if it has one; 1 improve();
+/// else drift().
+void randomMove(NodeMover& mover, const PolyMesh& mesh, Id p, unsigned seed, unsigned kind);
 /// A few moves of every kind of each point, the same for the same mesh.
 void sweep(NodeMover& mover, const PolyMesh& mesh, const MoveBlocks& blocks);
 

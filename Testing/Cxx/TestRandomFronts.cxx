@@ -10,6 +10,7 @@
 #include "DummyLayer.h"
 #include "FrontPredicates.h"
 #include "NodeMover.h"
+#include "TestMoves.h"
 #include "TestRandomDomains.h"
 
 namespace {
@@ -196,20 +197,10 @@ TEST(RandomFronts, StormsOfMovesLeaveValidMeshesAndTrueCaches) {
 std::vector<Vec3> sweptPoints(PolyMesh mesh, int threads) {
   withThreads(threads, [&] {
     NodeMover mover(mesh, {});
-    std::vector<Id> all(mesh.points.size());
-    for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<Id>(i);
-    const auto groups = mover.colour(all);
+    const auto groups = mover.colour(allPoints(mesh));
     for (unsigned sweep = 0; sweep < 6; ++sweep)
       mover.forEach(groups, [&](Id p) {
-        std::mt19937_64 g(97 * static_cast<unsigned>(p) + sweep);
-        const Vec3 d = 0.3 * mesh.finestSize * randomPoint(g, -1, 1);
-        const Id base = mesh.base[p];
-        if (base != kNone && sweep % 3 == 0)
-          mover.moveTogether({p, base}, {mesh.points[p] + d, mesh.points[base] + 0.5 * d});
-        else if (sweep % 3 == 1)
-          mover.improve(p, mesh.points[p] + d);
-        else
-          mover.drift(p, mesh.points[p] + d);
+        randomMove(mover, mesh, p, 97 * static_cast<unsigned>(p) + sweep, sweep % 3);
       });
     EXPECT_EQ(whatIsWrong(mesh), "");
   });
