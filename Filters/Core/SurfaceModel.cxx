@@ -267,19 +267,27 @@ std::vector<Id> SurfaceModel::trianglesNear(const Box& box) const {
   return found;
 }
 
+// After Moeller and Trumbore, 1997.
+double rayHit(const Vec3& from, const Vec3& along, const Vec3& a, const Vec3& b, const Vec3& c) {
+  constexpr double miss = std::numeric_limits<double>::infinity();
+  const Vec3 ab = b - a, ac = c - a, p = along.cross(ac);
+  const double det = ab.dot(p);
+  if (det == 0) return miss;
+  const Vec3 to = from - a, q = to.cross(ab);
+  const double u = to.dot(p) / det, v = along.dot(q) / det;
+  constexpr double kSlack = 1e-9;  // neighbouring triangles leave no slit between them
+  if (u < -kSlack || v < -kSlack || u + v > 1 + kSlack) return miss;
+  return ac.dot(q) / det;
+}
+
 bool SurfaceModel::crosses(const Vec3& p, const Vec3& q) const {
-  constexpr double kEdge = 1e-9;  // barycentric: no way through between two triangles
   Box path;
   path.add(p);
   path.add(q);
-  const Vec3 way = q - p;
   const auto crossesSlot = [&](Id slot) {
     const Hierarchy::Corners& t = tree_->slots[slot];
-    const Vec3 ab = t.b - t.a, ac = t.c - t.a, ap = p - t.a, n = ab.cross(ac), e = ap.cross(way);
-    const double slope = -way.dot(n), reach = ap.dot(n) / slope;
-    if (!(reach >= 0 && reach <= 1)) return false;
-    const double v = ac.dot(e) / slope, w = -ab.dot(e) / slope;
-    return v >= -kEdge && w >= -kEdge && v + w <= 1 + kEdge;
+    const double at = rayHit(p, q - p, t.a, t.b, t.c);
+    return at >= 0 && at <= 1;
   };
   return tree_->bvh.any([&](Id, const Box& box) { return box.overlaps(path); }, crossesSlot);
 }

@@ -24,6 +24,9 @@ struct Closest {
   Id triangle = kNone;
 };
 
+/// Where the line from + t along meets the triangle: t, also below 0; infinity for a miss.
+double rayHit(const Vec3& from, const Vec3& along, const Vec3& a, const Vec3& b, const Vec3& c);
+
 class SurfaceModel {
  public:
   using Triangle = std::array<Id, 3>;

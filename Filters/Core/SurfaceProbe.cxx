@@ -17,19 +17,6 @@ constexpr std::size_t kNormals = 8;  // triangles of a cell that the fit of the 
 
 }  // namespace
 
-// After Moeller and Trumbore, 1997.
-double rayHit(const Vec3& from, const Vec3& along, const Vec3& a, const Vec3& b, const Vec3& c) {
-  constexpr double miss = std::numeric_limits<double>::infinity();
-  const Vec3 ab = b - a, ac = c - a, p = along.cross(ac);
-  const double det = ab.dot(p);
-  if (det == 0) return miss;
-  const Vec3 to = from - a, q = to.cross(ab);
-  const double u = to.dot(p) / det, v = along.dot(q) / det;
-  constexpr double kSlack = 1e-9;  // neighbouring triangles leave no slit between them
-  if (u < -kSlack || v < -kSlack || u + v > 1 + kSlack) return miss;
-  return ac.dot(q) / det;
-}
-
 SurfaceProbe::SurfaceProbe(const SurfaceModel& model, const Brick& brick,
                            const OctreeDecomposeOptions& options)
     : model_(model),

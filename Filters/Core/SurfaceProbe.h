@@ -23,9 +23,6 @@
 
 namespace pm {
 
-/// Where the line from + t along meets the triangle: t, also below 0; infinity for a miss.
-double rayHit(const Vec3& from, const Vec3& along, const Vec3& a, const Vec3& b, const Vec3& c);
-
 class SurfaceProbe {
  public:
   SurfaceProbe(const SurfaceModel& model, const Brick& brick, const OctreeDecomposeOptions& options);
