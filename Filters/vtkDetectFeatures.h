@@ -3,10 +3,11 @@
  * @class vtkDetectFeatures
  * @brief shows the feature curves of a geometry: what vtkResolveFeatures would put mesh edges on
  *
- * Input: the geometry. Output: a polydata with a vertex for each corner and a polyline for each curve, with
- * the cell arrays Kind (bits: 1 sharp, 2 interface, 4 open, 8 non-manifold, 16 intersection; 0 for corners),
- * Curve (number of the curve, -1 for corners) and Length. Lengths are in the units of the geometry, angles in
- * degrees. Source: thesis section 4.7.1.
+ * Inputs: the geometry; polylines on it that are features too (optional). Output: a polydata with a vertex
+ * for each corner and a polyline for each curve, with the cell arrays Kind (bits: 1 sharp, 2 interface, 4
+ * open, 8 non-manifold, 16 intersection, 32 given; 0 for corners), Curve (number of the curve, -1 for
+ * corners) and Length. Lengths are in the units of the geometry, angles in degrees. Source: thesis
+ * section 4.7.1.
  */
 #pragma once
 
@@ -42,6 +43,7 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkDetectFeatures : public vtkMeshStage {
  protected:
   vtkDetectFeatures();
   ~vtkDetectFeatures() override = default;
+  int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   void Run(vtkInformationVector** inputs, vtkUnstructuredGrid* mesh, vtkPolyData* boundary,
            pm::Monitor& monitor) override;

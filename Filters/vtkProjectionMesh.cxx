@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "FeaturePacking.h"
 #include "LeakPacking.h"
 #include "MeshPacking.h"
 #include "Pipeline.h"
@@ -23,11 +24,11 @@ struct vtkProjectionMesh::LastRun {
 
 vtkStandardNewMacro(vtkProjectionMesh);
 
-vtkProjectionMesh::vtkProjectionMesh() : vtkFoamLimitsStage(2, 0), Report(std::make_unique<LastRun>()) {
+vtkProjectionMesh::vtkProjectionMesh() : vtkFoamLimitsStage(3, 0), Report(std::make_unique<LastRun>()) {
   const pm::PipelineOptions defaults;
   this->CloseHoles = static_cast<int>(defaults.closeHoles);
   this->StopAfter = static_cast<int>(defaults.stopAfter);
-  this->SetNumberOfOutputPorts(vtkPaintFront::LEAKS + 1);  // those of Paint Front
+  this->SetNumberOfOutputPorts(UNRESOLVED + 1);
 }
 
 vtkProjectionMesh::~vtkProjectionMesh() = default;
@@ -48,7 +49,7 @@ void vtkProjectionMesh::Run(vtkInformationVector** inputs, vtkUnstructuredGrid* 
   options.front = this->Front->Options();
   options.layer = this->Layer->Options();
   options.project = this->Projection->Options();
-  options.features = this->Features->Options();
+  options.features = this->Features->Options(vtkDataObject::GetData(inputs[2]));
   options.refine = this->Refine->Options();
   options.layer.limits = options.project.limits = options.features.limits = options.refine.limits =
       this->Limits();
@@ -76,6 +77,8 @@ void vtkProjectionMesh::Run(vtkInformationVector** inputs, vtkUnstructuredGrid* 
                     vtkPolyData::SafeDownCast(this->GetOutputDataObject(vtkPaintFront::INVISIBLE)));
   pm::packLeaks(front.leaked.leaks,
                 vtkPolyData::SafeDownCast(this->GetOutputDataObject(vtkPaintFront::LEAKS)));
+  pm::packUnresolved(this->Report->stages.features.unresolved,
+                     vtkPolyData::SafeDownCast(this->GetOutputDataObject(UNRESOLVED)));
 }
 
 void vtkProjectionMesh::ShowFailure() {
@@ -91,6 +94,7 @@ int vtkProjectionMesh::FillOutputPortInformation(int port, vtkInformation* info)
 
 int vtkProjectionMesh::FillInputPortInformation(int port, vtkInformation* info) {
   if (port == 1) return vtkOctreeDecompose::DescribeSizeSurfacePort(info);
+  if (port == 2) return vtkResolveFeatures::DescribeCurvesPort(info);
   return this->Superclass::FillInputPortInformation(port, info);
 }
 

@@ -180,6 +180,9 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkProjectionMesh : public vtkFoamLimitsSta
   vtkIdType GetFacesWithLayers(int layers) const;
   ///@}
 
+  /** Output ports: mesh, boundary, those of vtkPaintFront, and vtkResolveFeatures' unresolved features. */
+  enum PortType { UNRESOLVED = vtkPaintFront::LEAKS + 1 };
+
  protected:
   vtkProjectionMesh();
   ~vtkProjectionMesh() override;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkResolveFeatures.h"
 
+#include "FeaturePacking.h"
 #include "MeshPacking.h"
 #include "ResolveFeatures.h"
+#include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
@@ -10,7 +12,7 @@
 
 vtkStandardNewMacro(vtkResolveFeatures);
 
-vtkResolveFeatures::vtkResolveFeatures() : vtkFoamLimitsStage(2, 1) {
+vtkResolveFeatures::vtkResolveFeatures() : vtkFoamLimitsStage(3, 1) {
   const pm::ResolveFeaturesOptions defaults;
   this->SharpAngle = defaults.features.sharpAngle;
   this->CornerAngle = defaults.features.cornerAngle;
@@ -20,9 +22,21 @@ vtkResolveFeatures::vtkResolveFeatures() : vtkFoamLimitsStage(2, 1) {
   this->GapTolerance = defaults.features.gapTolerance;
   this->ShortestCurve = defaults.features.shortestCurve;
   this->Rounds = defaults.rounds;
+  this->SetNumberOfOutputPorts(UNRESOLVED + 1);
 }
 
-pm::ResolveFeaturesOptions vtkResolveFeatures::Options() const {
+int vtkResolveFeatures::DescribeCurvesPort(vtkInformation* info) {
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  return 1;
+}
+
+int vtkResolveFeatures::FillInputPortInformation(int port, vtkInformation* info) {
+  return port == 2 ? DescribeCurvesPort(info) : this->Superclass::FillInputPortInformation(port, info);
+}
+
+pm::ResolveFeaturesOptions vtkResolveFeatures::Options(vtkDataObject* curves) const {
   pm::ResolveFeaturesOptions options;
   options.features.sharpAngle = this->SharpAngle;
   options.features.cornerAngle = this->CornerAngle;
@@ -31,6 +45,7 @@ pm::ResolveFeaturesOptions vtkResolveFeatures::Options() const {
   options.features.intersections = this->Intersections;
   options.features.gapTolerance = this->GapTolerance;
   options.features.shortestCurve = this->ShortestCurve;
+  options.features.given = pm::curvesFrom(curves);
   options.rounds = this->Rounds;
   options.limits = this->Limits();
   return options;
@@ -40,18 +55,20 @@ void vtkResolveFeatures::Run(vtkInformationVector** inputs, vtkUnstructuredGrid*
                              pm::Monitor& monitor) {
   this->FeatureLength = this->ResolvedLength = 0;
   this->Corners = this->ResolvedCorners = 0;
+  const pm::ResolveFeaturesOptions options = this->Options(vtkDataObject::GetData(inputs[2]));
   pm::PolyMesh result =
       pm::unpackMesh(vtkUnstructuredGrid::GetData(inputs[0]), "Resolve Features", {pm::Stage::Projected});
   const auto model = this->Surface(inputs);
   pm::DistanceField field(*model, result.finestSize);
   pm::ResolveFeaturesReport report;
-  pm::resolveFeatures(result, field, this->Options(), monitor, &report);
+  pm::resolveFeatures(result, field, options, monitor, &report);
   this->FeatureLength = report.featureLength;
   this->ResolvedLength = report.resolvedLength;
   this->Corners = report.corners;
   this->ResolvedCorners = report.resolvedCorners;
   pm::packMesh(result, mesh);
   pm::packBoundary(result, boundary);
+  pm::packUnresolved(report.unresolved, vtkPolyData::SafeDownCast(this->GetOutputDataObject(UNRESOLVED)));
 }
 
 void vtkResolveFeatures::PrintSelf(ostream& os, vtkIndent indent) {

@@ -3,8 +3,11 @@
  * @class vtkResolveFeatures
  * @brief stage 5: mesh edges onto sharp edges and patch interfaces, nodes onto corners
  *
- * Input 0: the grid of vtkProject; input 1: the geometry. Source: thesis section 4.7. Lengths are in the
- * units of the geometry, angles in degrees.
+ * Input 0: the grid of vtkProject; input 1: the geometry; input 2 (optional): polylines on it that are
+ * features too. Output 2: a polyline for each part of a feature that no mesh edges lie on, with the cell
+ * arrays Curve, Reason (see Unresolved in ResolveFeatures.h), Why (the same in words, or the limit that was
+ * in the way), Length and NeededSize, the length of edges that would resolve it (0 = none is known). Source:
+ * thesis section 4.7. Lengths are in the units of the geometry, angles in degrees.
  */
 #pragma once
 
@@ -73,12 +76,17 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkResolveFeatures : public vtkFoamLimitsSt
   vtkGetMacro(ResolvedCorners, vtkIdType);
   ///@}
 
-  /** The properties as the kernel takes them. */
-  pm::ResolveFeaturesOptions Options() const;
+  enum PortType { UNRESOLVED = 2 };
+
+  /** The properties, and the polylines if any, as the kernel takes them. */
+  pm::ResolveFeaturesOptions Options(vtkDataObject* curves) const;
+  /** What an input port for polylines takes, for other filters that have one. */
+  static int DescribeCurvesPort(vtkInformation* info);
 
  protected:
   vtkResolveFeatures();
   ~vtkResolveFeatures() override = default;
+  int FillInputPortInformation(int port, vtkInformation* info) override;
   void Run(vtkInformationVector** inputs, vtkUnstructuredGrid* mesh, vtkPolyData* boundary,
            pm::Monitor& monitor) override;
 

@@ -2,7 +2,8 @@
 """Meshes triangle geometry from the command line; ../../mesh.sh builds the suite and runs this.
 
 Runs the chain stage by stage through the VTK classes of ProjectionMesherFilters, with time and memory of each, and
-writes mesh.vtu, boundary.vtp, polyMesh/, section.png and surface.png. Exits 0 only when the mesh is valid.
+writes mesh.vtu, boundary.vtp, polyMesh/, unresolved.vtp (parts of features without mesh edges), section.png and
+surface.png. Exits 0 only when the mesh is valid.
 """
 import argparse
 import math
@@ -286,15 +287,15 @@ def close_holes(pm, runner, options, geometry):
     holes.SetPatchArray("PatchId")
     holes.SetInputDataObject(0, geometry)
     runner.run("CloseHoles", holes)
-    write_leaks(options, holes.GetOutputDataObject(1))
+    write_lines(options, "leaks.vtp", holes.GetOutputDataObject(1))
     return holes.GetOutputDataObject(0)
 
 
-def write_leaks(options, leaks):
+def write_lines(options, name, lines):
     from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
     writer = vtkXMLPolyDataWriter()
-    writer.SetFileName(os.path.join(options.output, "leaks.vtp"))
-    writer.SetInputDataObject(leaks)
+    writer.SetFileName(os.path.join(options.output, name))
+    writer.SetInputDataObject(lines)
     writer.SetDataModeToBinary()
     writer.Write()
 
@@ -332,12 +333,14 @@ def mesh_geometry(pm, runner, options, geometry):
             runner.run(name, stage)
         except UserError as error:
             if name == "PaintFront" and stage.GetOutputDataObject(stage.LEAKS).GetNumberOfCells():
-                write_leaks(options, stage.GetOutputDataObject(stage.LEAKS))
+                write_lines(options, "leaks.vtp", stage.GetOutputDataObject(stage.LEAKS))
                 raise UserError(f"{error} The ways are in {options.output}/leaks.vtp.") from error
             raise
         grid = stage.GetOutputDataObject(0)
         if name == "PaintFront":
             print_notes(grid)
+        if name == "ResolveFeatures":
+            write_lines(options, "unresolved.vtp", stage.GetOutputDataObject(stage.UNRESOLVED))
         for port in range(len(inputs)):
             stage.SetInputDataObject(port, None)  # free what is done with
     return filters
@@ -378,7 +381,7 @@ def clear_output(options):
     """Results of an earlier run must not be taken for this one's."""
     try:
         os.makedirs(options.output, exist_ok=True)
-        for name in ("mesh.vtu", "boundary.vtp", "leaks.vtp", "section.png", "surface.png"):
+        for name in ("mesh.vtu", "boundary.vtp", "leaks.vtp", "unresolved.vtp", "section.png", "surface.png"):
             if os.path.exists(os.path.join(options.output, name)):
                 os.remove(os.path.join(options.output, name))
         shutil.rmtree(os.path.join(options.output, "polyMesh"), ignore_errors=True)

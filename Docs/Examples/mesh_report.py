@@ -49,8 +49,14 @@ def share(part, whole):
 
 
 def features(stage):
-    return [("length of feature edges resolved", share(stage.GetResolvedLength(), stage.GetFeatureLength())),
-            ("corners resolved", share(stage.GetResolvedCorners(), stage.GetCorners()))]
+    pairs = [("length of feature edges resolved", share(stage.GetResolvedLength(), stage.GetFeatureLength())),
+             ("corners resolved", share(stage.GetResolvedCorners(), stage.GetCorners()))]
+    lost = {}
+    parts = stage.GetOutputDataObject(stage.UNRESOLVED).GetCellData()
+    for i in range(parts.GetNumberOfTuples()):
+        why = parts.GetAbstractArray("Why").GetValue(i)
+        lost[why] = lost.get(why, 0) + parts.GetArray("Length").GetValue(i)
+    return pairs + [(f"  not: {why}", f"{lost[why]:.4g}") for why in sorted(lost, key=lost.get, reverse=True)]
 
 
 def layers(stage):

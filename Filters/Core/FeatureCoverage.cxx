@@ -12,14 +12,9 @@ namespace {
 
 constexpr double kOn = 0.1;  // length scales from a feature that count as on it
 
-struct Arc {
-  Id curve;
-  double from, to;
-};
-
 /// Parts of curves that the wall edges from one node to later ones cover.
 void coverFrom(const PolyMesh& mesh, const WallSurface& wall, const FeatureGraph& graph,
-               const CurveTable& table, Id row, std::vector<Arc>& arcs) {
+               const CurveTable& table, Id row, std::vector<CurveArc>& arcs) {
   const Vec3& p = mesh.points[wall.nodes[row]];
   const double reach = kOn * wall.scale[row];
   Box box;
@@ -52,19 +47,20 @@ void coverFrom(const PolyMesh& mesh, const WallSurface& wall, const FeatureGraph
   }
 }
 
-double unionLength(std::vector<Arc>& arcs) {
-  std::sort(arcs.begin(), arcs.end(), [](const Arc& a, const Arc& b) {
+/// Makes overlapping arcs one.
+std::vector<CurveArc> united(std::vector<CurveArc> arcs) {
+  std::sort(arcs.begin(), arcs.end(), [](const CurveArc& a, const CurveArc& b) {
     return std::tie(a.curve, a.from, a.to) < std::tie(b.curve, b.from, b.to);
   });
-  double sum = 0, end = 0;
-  Id curve = kNone;
-  for (const Arc& a : arcs) {
-    if (a.curve != curve) end = a.from;
-    curve = a.curve;
-    sum += std::max(0.0, a.to - std::max(end, a.from));
-    end = std::max(end, a.to);
+  std::size_t kept = 0;
+  for (const CurveArc& a : arcs) {
+    if (kept > 0 && arcs[kept - 1].curve == a.curve && a.from <= arcs[kept - 1].to)
+      arcs[kept - 1].to = std::max(arcs[kept - 1].to, a.to);
+    else
+      arcs[kept++] = a;
   }
-  return sum;
+  arcs.resize(kept);
+  return arcs;
 }
 
 Id coveredCorners(const PolyMesh& mesh, const WallSurface& wall, const FeatureGraph& graph) {
@@ -86,21 +82,26 @@ Id coveredCorners(const PolyMesh& mesh, const WallSurface& wall, const FeatureGr
 
 }  // namespace
 
-ResolveFeaturesReport featureCoverage(const PolyMesh& mesh, const WallSurface& wall,
-                                      const FeatureGraph& graph) {
-  const CurveTable table(graph);
-  ResolveFeaturesReport report;
-  for (std::size_t c = 0; c < graph.curves().size(); ++c)
-    report.featureLength += table.length(static_cast<Id>(c));
+std::vector<CurveArc> coveredArcs(const PolyMesh& mesh, const WallSurface& wall, const FeatureGraph& graph,
+                                  const CurveTable& table) {
   constexpr Id kBlock = 512;
-  std::vector<std::vector<Arc>> blocks((wall.size() + kBlock - 1) / kBlock);
+  std::vector<std::vector<CurveArc>> blocks((wall.size() + kBlock - 1) / kBlock);
   tbb::parallel_for(std::size_t(0), blocks.size(), [&](std::size_t b) {
     const Id first = static_cast<Id>(b) * kBlock, last = std::min(wall.size(), first + kBlock);
     for (Id row = first; row < last; ++row) coverFrom(mesh, wall, graph, table, row, blocks[b]);
   });
-  std::vector<Arc> arcs;
+  std::vector<CurveArc> arcs;
   for (const auto& block : blocks) arcs.insert(arcs.end(), block.begin(), block.end());
-  report.resolvedLength = unionLength(arcs);
+  return united(std::move(arcs));
+}
+
+ResolveFeaturesReport featureCoverage(const PolyMesh& mesh, const WallSurface& wall,
+                                      const FeatureGraph& graph, const CurveTable& table,
+                                      const std::vector<CurveArc>& covered) {
+  ResolveFeaturesReport report;
+  for (std::size_t c = 0; c < graph.curves().size(); ++c)
+    report.featureLength += table.length(static_cast<Id>(c));
+  for (const CurveArc& arc : covered) report.resolvedLength += arc.to - arc.from;
   report.corners = static_cast<Id>(graph.corners().size());
   report.resolvedCorners = coveredCorners(mesh, wall, graph);
   return report;

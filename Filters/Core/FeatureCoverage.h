@@ -7,9 +7,21 @@
 
 namespace pm {
 
-/// Fills the report: a part of a curve counts where a wall edge's ends and middle are within 0.1 length
-/// scales of it, a corner where a wall node is.
+/// Part of a curve between two arc lengths.
+struct CurveArc {
+  Id curve;
+  double from, to;
+};
+
+/// The parts of curves where a wall edge's ends and middle are within 0.1 length scales of them; disjoint,
+/// ascending by curve and place.
+std::vector<CurveArc> coveredArcs(const PolyMesh& mesh, const WallSurface& wall, const FeatureGraph& graph,
+                                  const CurveTable& table);
+
+/// Fills the lengths of the report from those parts, and the corners: one counts where a wall node is within
+/// 0.1 length scales.
 ResolveFeaturesReport featureCoverage(const PolyMesh& mesh, const WallSurface& wall,
-                                      const FeatureGraph& graph);
+                                      const FeatureGraph& graph, const CurveTable& table,
+                                      const std::vector<CurveArc>& covered);
 
 }  // namespace pm

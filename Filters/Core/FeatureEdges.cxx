@@ -193,6 +193,10 @@ void checkOptions(const FeatureOptions& options) {
     throw InputError("The sharp angle and the corner angle of features must lie between 0 and 180 degrees.");
   if (!isLength(options.gapTolerance) || !isLength(options.shortestCurve))
     throw InputError("The gap tolerance and the shortest curve of features must be lengths of 0 or more.");
+  for (const std::vector<Vec3>& line : options.given)
+    for (const Vec3& p : line)
+      if (!p.allFinite())
+        throw InputError("A feature curve has a point that is not a number; remove that point.");
 }
 
 }  // namespace
@@ -209,9 +213,10 @@ FeatureGraph detectFeatures(const SurfaceModel& model, const FeatureOptions& opt
   watch.check(0.1, "open edges");
   open = chooseOpenEdges(model, std::move(open), options);
   const double trusted = kTrustedHeight * model.bounds().diagonal();
+  const IntersectionTolerances tolerances{std::max(trusted, options.gapTolerance), trusted};
+  addGivenCurves(model, options, tolerances, network, open);
   if (options.intersections) {
     PartMonitor part(watch, 0.2, 0.8);
-    const IntersectionTolerances tolerances{std::max(trusted, options.gapTolerance), trusted};
     addIntersections(model, options, tolerances, network, open, part);
   }
   watch.check(0.8, "welding");

@@ -19,7 +19,9 @@ struct FeatureOptions {
   double gapTolerance =
       0;  ///< length; an open edge this close to a triangle whose plane differs by more than
           ///< sharpAngle, or to one of another patch, is a feature too (unstitched geometry)
-  double shortestCurve = 0;  ///< length; shorter open-ended curves that join nothing are dropped
+  double shortestCurve = 0;              ///< length; shorter open-ended curves that join nothing are dropped
+  std::vector<std::vector<Vec3>> given;  ///< polylines on the surface that are features too; a closed one
+                                         ///< repeats its first point
 };
 
 enum FeatureKind : std::uint8_t {
@@ -27,7 +29,8 @@ enum FeatureKind : std::uint8_t {
   kInterfaceEdge = 2,
   kOpenEdge = 4,
   kNonManifoldEdge = 8,
-  kIntersectionEdge = 16  ///< no edge of the input: two triangles cut each other there
+  kIntersectionEdge = 16,  ///< no edge of the input: two triangles cut each other there
+  kGivenEdge = 32          ///< of a polyline that the user gave
 };
 
 struct FeatureSegment {

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Curves along which the surface cuts itself, as features; FeatureNetwork.h says what is kept.
+// Curves along which the surface cuts itself, and those that the user gives, as features; FeatureNetwork.h
+// says what is kept.
 #include <tbb/parallel_for.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "DisjointSets.h"
@@ -17,20 +20,32 @@ namespace {
 
 using Links = FeatureNetwork::Links;
 
-class IntersectionLinks {
+/// Links of one source, fitted to those that are there already.
+class FittedLinks {
  public:
-  IntersectionLinks(const SurfaceModel& model, const FeatureOptions& options,
-                    const IntersectionTolerances& tolerances, FeatureNetwork& network)
+  FittedLinks(const SurfaceModel& model, const FeatureOptions& options,
+              const IntersectionTolerances& tolerances, FeatureNetwork& network)
       : model_(model),
         options_(options),
         tolerance2_(tolerances.joining * tolerances.joining),
         trusted_(tolerances.trusted),
         network_(network) {}
 
-  void run(std::vector<OpenEdge>& open, Monitor& monitor) {
-    chooseLinks(monitor);
-    if (links_.empty()) return;
+  void addIntersections(std::vector<OpenEdge>& open, Monitor& monitor) {
+    chooseIntersections(monitor);
     monitor.check(1, "intersection curves");
+    fit(open);
+  }
+  void addGiven(std::vector<OpenEdge>& open) {
+    takeGiven();
+    fit(open);
+  }
+
+ private:
+  const Vec3& at(Id p) const { return network_.points[p]; }
+
+  void fit(std::vector<OpenEdge>& open) {
+    if (links_.empty()) return;
     dropCovered();
     dropShort();
     joinToLinks();
@@ -38,9 +53,6 @@ class IntersectionLinks {
     network_.links.insert(network_.links.end(), links_.begin(), links_.end());
     unifyLinks(network_.links);
   }
-
- private:
-  const Vec3& at(Id p) const { return network_.points[p]; }
 
   bool isTrusted(Id t) const {
     const Vec3 &a = model_.corner(t, 0), &b = model_.corner(t, 1), &c = model_.corner(t, 2);
@@ -55,7 +67,7 @@ class IntersectionLinks {
   }
 
   /// Sharp segments of trusted triangles, and those of slivers that join two of them.
-  void chooseLinks(Monitor& monitor) {
+  void chooseIntersections(Monitor& monitor) {
     const std::shared_ptr<const SelfIntersections> known = knownIntersections(model_, monitor);
     const SelfIntersections& cuts = *known;
     std::vector<std::uint8_t> trusted(cuts.segments.size());
@@ -69,6 +81,22 @@ class IntersectionLinks {
     for (std::size_t i = 0; i < cuts.segments.size(); ++i) {
       const IntersectionSegment& s = cuts.segments[i];
       if (!trusted[i] && sure[s.start] != kNone && sure[s.end] != kNone) addLink(cuts, s, ids);
+    }
+    unifyLinks(links_);
+  }
+
+  /// Points in one place are one, so that polylines join where they meet.
+  void takeGiven() {
+    std::map<std::array<double, 3>, Id> ids;
+    for (const std::vector<Vec3>& line : options_.given) {
+      Id last = kNone;
+      for (const Vec3& p : line) {
+        const auto [it, isNew] = ids.try_emplace({p[0], p[1], p[2]}, static_cast<Id>(network_.points.size()));
+        if (isNew) network_.points.push_back(p);
+        if (last != kNone && last != it->second)
+          links_.push_back({std::min(last, it->second), std::max(last, it->second), kGivenEdge});
+        last = it->second;
+      }
     }
     unifyLinks(links_);
   }
@@ -195,7 +223,13 @@ class IntersectionLinks {
 void addIntersections(const SurfaceModel& model, const FeatureOptions& options,
                       const IntersectionTolerances& tolerances, FeatureNetwork& network,
                       std::vector<OpenEdge>& open, Monitor& monitor) {
-  IntersectionLinks(model, options, tolerances, network).run(open, monitor);
+  FittedLinks(model, options, tolerances, network).addIntersections(open, monitor);
+}
+
+void addGivenCurves(const SurfaceModel& model, const FeatureOptions& options,
+                    const IntersectionTolerances& tolerances, FeatureNetwork& network,
+                    std::vector<OpenEdge>& open) {
+  FittedLinks(model, options, tolerances, network).addGiven(open);
 }
 
 }  // namespace pm

@@ -81,6 +81,11 @@ void addIntersections(const SurfaceModel& model, const FeatureOptions& options,
                       const IntersectionTolerances& tolerances, FeatureNetwork& network,
                       std::vector<OpenEdge>& open, Monitor& monitor);
 
+/// Adds the polylines of FeatureOptions::given, fitted to what is there in the same way.
+void addGivenCurves(const SurfaceModel& model, const FeatureOptions& options,
+                    const IntersectionTolerances& tolerances, FeatureNetwork& network,
+                    std::vector<OpenEdge>& open);
+
 /// Adds open edges to the network. Borders within the tolerance of each other or of links already there are
 /// welded into one line: points join points, then points split the links they lie on, then equal links are
 /// one.

@@ -49,6 +49,14 @@ Vec3 CurveTable::at(Id curve, double s) const {
   return segment.a + (part > 0 ? std::min(1.0, (s - *it) / part) : 0.0) * (segment.b - segment.a);
 }
 
+std::vector<Vec3> CurveTable::part(Id curve, double from, double to) const {
+  std::vector<Vec3> points{at(curve, from)};
+  for (Id s = firstSegment(curve); s < endSegment(curve); ++s)
+    if (arc_[s] > from && arc_[s] < to) points.push_back(graph_.segments()[s].a);
+  points.push_back(to < length_[curve] ? at(curve, to) : graph_.segments()[endSegment(curve) - 1].b);
+  return points;
+}
+
 namespace {
 
 struct NearCorner {

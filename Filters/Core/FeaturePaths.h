@@ -80,6 +80,8 @@ class CurveTable {
   double project(const Vec3& p, Id segment, Vec3& on) const;
   /// Point at arc length s, which is wrapped on closed curves and clamped on open ones.
   Vec3 at(Id curve, double s) const;
+  /// The curve from one arc length to a larger one.
+  std::vector<Vec3> part(Id curve, double from, double to) const;
 
  private:
   const FeatureGraph& graph_;

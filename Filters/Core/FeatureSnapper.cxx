@@ -165,8 +165,17 @@ void FeatureSnapper::report(PathHistory& history) const {
   }
 }
 
-void FeatureSnapper::releaseMissed() {
-  for (Id row : missed()) role_[row] = Role::Free;
+std::vector<MissedTarget> FeatureSnapper::releaseMissed() {
+  std::vector<MissedTarget> given;
+  for (Id row : missed()) {
+    Refusal limit = Refusal::Other;
+    if (staysNear(row, target_[row], kSnapTolerance * wall_.scale[row]))
+      limit = mover_.tryMove(wall_.nodes[row], target_[row]);
+    if (limit == Refusal::None) continue;  // room was made for it since the last attempt
+    given.push_back({row, curve_[row], corner_[row], limit});
+    role_[row] = Role::Free;
+  }
+  return given;
 }
 
 void FeatureSnapper::snap(bool corners) {

@@ -14,6 +14,12 @@
 
 namespace pm {
 
+/// A node that could not be put where its curve or corner wants it.
+struct MissedTarget {
+  Id row, curve, corner;  ///< wall row; curve or corner is kNone
+  Refusal limit;          ///< Other: a face would leave the geometry
+};
+
 class FeatureSnapper {
  public:
   FeatureSnapper(NodeMover& mover, const WallSurface& wall, const DistanceField& field,
@@ -44,7 +50,8 @@ class FeatureSnapper {
   /// not end valid (thesis 4.4.1).
   void force();
   /// Gives up the targets that were not reached: their nodes are smoothed along the geometry like any other.
-  void releaseMissed();
+  /// Returns them with what refused the last attempt.
+  std::vector<MissedTarget> releaseMissed();
 
  private:
   enum class Role : std::uint8_t { Outside, Free, Curve, Corner };

@@ -10,7 +10,7 @@
 #include "FeaturePaths.h"
 #include "FeatureSnapper.h"
 #include "FittingCuts.h"
-#include "NodeMover.h"
+#include "UnresolvedFeatures.h"
 #include "WallFit.h"
 #include "WallPatches.h"
 
@@ -46,7 +46,7 @@ class Resolver {
     }
     for (bool corners : {false, true}) snapper_->snap(corners);  // where the last round has made room
     snapper_->workAroundAll();
-    snapper_->releaseMissed();
+    missed_ = snapper_->releaseMissed();
     snapper_->relax();
     for (int sweep = 0; sweep < kPolishSweeps; ++sweep) {
       monitor_.check(0.8 + 0.1 * sweep / kPolishSweeps, "polishing");
@@ -69,6 +69,7 @@ class Resolver {
   }
 
   const WallSurface& wall() const { return wall_; }
+  ResolveFeaturesReport report() const;
 
  private:
   void renew() {
@@ -112,6 +113,7 @@ class Resolver {
   WallSurface wall_;
   std::optional<NodeMover> mover_;
   std::optional<FeatureSnapper> snapper_;
+  std::vector<MissedTarget> missed_;
 };
 
 /// Gaps below half a cell are seams of unstitched patches: the octree has sealed them. Wider ones are the
@@ -156,6 +158,15 @@ bool Resolver::isOnFeature(Id a, Id b) const {
   return near(p, kOn) && near(q, kOn) && near(0.5 * (p + q), kAlong);
 }
 
+ResolveFeaturesReport Resolver::report() const {
+  const CurveTable table(graph_);
+  const std::vector<CurveArc> covered = coveredArcs(mesh_, wall_, graph_, table);
+  ResolveFeaturesReport report = featureCoverage(mesh_, wall_, graph_, table, covered);
+  const WallView view{mesh_, wall_, field_.model(), [&](Id p, const Vec3& at) { return sees(p, at); }};
+  report.unresolved = unresolvedFeatures(view, graph_, table, covered, missed_);
+  return report;
+}
+
 }  // namespace
 
 void resolveFeatures(PolyMesh& mesh, DistanceField& field, const ResolveFeaturesOptions& options,
@@ -172,7 +183,7 @@ void resolveFeatures(PolyMesh& mesh, DistanceField& field, const ResolveFeatures
   }
   monitor.check(0.9, "patches");
   assignWallPatches(mesh, field);
-  if (report != nullptr) *report = featureCoverage(mesh, resolver.wall(), graph);
+  if (report != nullptr) *report = resolver.report();
   canonicalise(mesh);
   mesh.stage = Stage::Resolved;
   monitor.check(1.0, "features done");

@@ -4,14 +4,14 @@ import math
 import unittest
 
 import numpy as np
-from support import Messages, box, pm, sphere
+from support import Messages, box, pm, polyline, sphere
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkCommonTransforms import vtkTransform
 from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 from vtkmodules.vtkFiltersGeneral import vtkTransformPolyDataFilter
 
-SHARP, INTERSECTION = 1, 16
+SHARP, INTERSECTION, GIVEN = 1, 16, 32
 
 
 def moved(data, x, y, z):
@@ -53,6 +53,16 @@ class DetectFeatures(unittest.TestCase):
         self.assertEqual(sorted(array(output, "Kind")), [0] * 8 + [SHARP] * 12)
         np.testing.assert_array_equal(array(output, "Curve"), [-1] * 8 + list(range(12)))
         np.testing.assert_allclose(array(output, "Length"), [0] * 8 + [1] * 12)
+
+    def test_given_curves(self):
+        features = pm.vtkDetectFeatures()
+        features.SetInputData(0, box())
+        features.SetInputData(1, polyline([(-0.5, 0, 0.5), (0.5, 0.2, 0.5)]))
+        features.Update()
+        output = features.GetOutputDataObject(0)
+        kind = array(output, "Kind")
+        self.assertEqual(output.GetNumberOfLines(), 12 + 2 + 1)  # two edges of the box are split
+        self.assertAlmostEqual(array(output, "Length")[kind == GIVEN].sum(), math.hypot(1, 0.2))
 
     def test_two_boxes_cut_in_a_hexagon(self):
         output = detected(two_boxes())

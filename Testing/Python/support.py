@@ -7,7 +7,7 @@ from vtkmodules.util.misc import calldata_type
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import VTK_STRING
 from vtkmodules.vtkCommonDataModel import vtkPolyData
-from vtkmodules.vtkFiltersSources import vtkCubeSource, vtkSphereSource
+from vtkmodules.vtkFiltersSources import vtkCubeSource, vtkPolyLineSource, vtkSphereSource
 
 STAGES = ("vtkOctreeDecompose", "vtkPaintFront", "vtkDummyLayer", "vtkProject", "vtkResolveFeatures",
           "vtkBoundaryRefine")
@@ -29,6 +29,15 @@ def box(x=1.0, y=1.0, z=1.0):
     source.SetXLength(x)
     source.SetYLength(y)
     source.SetZLength(z)
+    source.Update()
+    return source.GetOutput()
+
+
+def polyline(points):
+    source = vtkPolyLineSource()
+    source.SetNumberOfPoints(len(points))
+    for i, point in enumerate(points):
+        source.SetPoint(i, *point)
     source.Update()
     return source.GetOutput()
 
