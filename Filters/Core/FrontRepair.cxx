@@ -168,12 +168,17 @@ bool FrontRepair::inSight(Id from, Id to) const {
   return true;
 }
 
-bool FrontRepair::hasPaintedNeighbourInSight(Id leaf) const {
+// A painted neighbour out of sight is on the other side of a wall: adding the leaf would make a way through.
+bool FrontRepair::seesPaintedNeighbours(Id leaf) const {
   std::array<Id, 4> n;
+  bool any = false;
   for (int side = 0; side < 6; ++side)
-    for (int k = tree_.faceNeighbours(leaf, side, n); k-- > 0;)
-      if (painted_[n[k]] && inSight(n[k], leaf)) return true;
-  return false;
+    for (int k = tree_.faceNeighbours(leaf, side, n); k-- > 0;) {
+      if (!painted_[n[k]]) continue;
+      if (!inSight(n[k], leaf)) return false;
+      any = true;
+    }
+  return any;
 }
 
 Id FrontRepair::regionBeside(Id leaf) const {
@@ -222,7 +227,7 @@ Id FrontRepair::fill() {
     const Id leaf = candidates[i];
     if (foreseen[i] == kNotBetween || (gainChanged_[leaf] ? gain(leaf) : foreseen[i]) < 0) continue;
     const Id region = regionBeside(leaf);
-    if (region == kNone) continue;
+    if (region == kNone || !seesPaintedNeighbours(leaf)) continue;
     add(leaf, region);
     filled.push_back(leaf);
     forSurroundings(leaf, [&](Id other) { gainChanged_[other] = 1; });
@@ -237,7 +242,7 @@ bool FrontRepair::growAt(const Coord& node) {
   for (Id leaf : leavesAround(node)) {
     if (painted_[leaf] || !tree_.cut[leaf] || touched_[leaf] || leaf == best) continue;
     const int g = gain(leaf);
-    if (g > bestGain && regionBeside(leaf) != kNone && hasPaintedNeighbourInSight(leaf)) {
+    if (g > bestGain && regionBeside(leaf) != kNone && seesPaintedNeighbours(leaf)) {
       best = leaf;
       bestGain = g;
     }

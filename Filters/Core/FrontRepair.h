@@ -52,7 +52,7 @@ class FrontRepair {
   /// By how much the number of forbidden nodes would fall if the leaf's paint were flipped.
   int gain(Id leaf) const;
   bool isBetweenPainted(Id leaf) const;
-  bool hasPaintedNeighbourInSight(Id leaf) const;
+  bool seesPaintedNeighbours(Id leaf) const;
   bool inSight(Id from, Id to) const;
   /// The one region of the painted face neighbours, kNone when there are none or several.
   Id regionBeside(Id leaf) const;

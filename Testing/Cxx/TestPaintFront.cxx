@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <random>
 #include <set>
 
 #include "FrontPredicates.h"
@@ -282,6 +283,40 @@ bool holds(unsigned pattern, bool (*predicate)(const Octree&, const std::vector<
   for (int k = 0; k < 8; ++k)
     painted[tree.find({1 + (k & 1), 1 + (k >> 1 & 1), 1 + (k >> 2)})] = pattern >> k & 1;
   return predicate(tree, painted);
+}
+
+/// Centre of the leaf that each cell of a front's mesh is.
+std::vector<Vec3> leafCentres(const PolyMesh& mesh) {
+  std::vector<Box> boxes(mesh.cellCount);
+  for (Id f = 0; f < mesh.faces.rows(); ++f)
+    for (Id p : mesh.faces[f]) {
+      boxes[mesh.owner[f]].add(mesh.points[p]);
+      if (f < mesh.internalFaces()) boxes[mesh.neighbour[f]].add(mesh.points[p]);
+    }
+  std::vector<Vec3> centres;
+  for (const Box& box : boxes) centres.push_back(box.centre());
+  return centres;
+}
+
+// Filling and growing take cells that the geometry cuts: never such that the domain goes through a wall.
+TEST(PaintFront, NoWayLeadsThroughASheet) {
+  std::mt19937_64 g(7);
+  for (int seed = 0; seed < 12; ++seed) {
+    SCOPED_TRACE(seed);
+    Soup soup;
+    for (int sheet = 0; sheet < 3; ++sheet) {
+      const Vec3 u = randomPoint(g, -0.5, 0.5), v = randomPoint(g, -0.5, 0.5);
+      soup.addGrid(randomPoint(g, 0.2, 0.8) - 0.5 * (u + v), u, v, 4);
+    }
+    const auto model = soup.model();
+    PaintFrontOptions options;
+    options.region = Region::Everything;
+    const PolyMesh mesh = paint(*model, 0.06, options);
+    expectSound(mesh);
+    const std::vector<Vec3> centres = leafCentres(mesh);
+    for (Id f = 0; f < mesh.internalFaces(); ++f)
+      EXPECT_FALSE(model->crosses(centres[mesh.owner[f]], centres[mesh.neighbour[f]]));
+  }
 }
 
 TEST(FrontPredicates, KnowGoodAndBadFronts) {
