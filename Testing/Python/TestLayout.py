@@ -72,7 +72,7 @@ class Layout(unittest.TestCase):
         filters = dict(server_manager.proxies(os.path.join(ROOT, "XML")))
         absent = []
         for stem in STAGES + ("ProjectionMesh", "DetectFeatures", "CloseHoles", "FarField", "MeshValidity",
-                              "MeshQualityReport"):
+                              "MeshQualityReport", "MeshSlice"):
             page = read(f"Docs/{stem}.md")
             if filters[stem].get("base_proxyname") == "OctreeProperties":
                 page += read("Docs/OctreeDecompose.md")
