@@ -9,11 +9,10 @@ import mesh_pictures as pictures
 import numpy
 import vtkmodules.vtkCommonCore  # noqa: F401  (VTK's core must load before modules built on it)
 from projection_mesher import ProjectionMesherFilters as pm
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkFiltersSources import vtkSphereSource
 
 DOMAIN = (-1.5, 1.5, -1.5, 1.5, -1.5, 1.5)
-STAND_OFF = 0.03  # of the plane from the middle, which is a plane of nodes
 FAR_COLOURS = ((0.55, 0.72, 0.88), (0.97, 0.93, 0.85))  # cells of the inner mesh, far cells
 
 
@@ -41,15 +40,9 @@ def draw(far, inner_cells, path):
     outside = [i for i in present if names[i] != "wall"]
     pictures.surface(pictures.only_patches(boundary, outside), names, outside, path + ".png")
 
-    cut = pictures.cut_grid(far.GetOutput(), 1, STAND_OFF)
-    far_cell = vtk_to_numpy(cut.GetCellData().GetArray("Cell")) >= inner_cells
-    cut.GetCellData().SetScalars(numpy_to_vtk(far_cell.astype(numpy.float32), deep=True))
-    face = pictures.actor_of(cut, pictures.lookup(FAR_COLOURS, 2))
-    lines = pictures.actor_of(pictures.cell_lines(cut))
-    lines.GetProperty().SetColor(*pictures.LINES)
-    for actor in (face, lines):
-        actor.GetProperty().LightingOff()
-    renderer = pictures.new_renderer([face, lines])
+    cut = pictures.cut_grid(far.GetOutput(), 1, 0)
+    pictures.colour_cells(cut, vtk_to_numpy(cut.GetCellData().GetArray("vtkOriginalCellIds")) >= inner_cells)
+    renderer = pictures.new_renderer(pictures.section_actors(cut, FAR_COLOURS))
     renderer.GetActiveCamera().ParallelProjectionOn()
     pictures.save(renderer, vtk_to_numpy(cut.GetPoints().GetData()), (0, -1, 0), (0, 0, 1), path + "_section.png")
 

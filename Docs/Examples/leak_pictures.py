@@ -28,11 +28,11 @@ from vtkmodules.vtkFiltersModeling import vtkAdaptiveSubdivisionFilter
 from vtkmodules.vtkFiltersSources import vtkSphereSource
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow
 
-from mesh_pictures import write_picture
-
 BUILT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "build", "lib", "python3", "dist-packages")
 sys.path.append(BUILT)
 from projection_mesher import ProjectionMesherFilters as pm  # noqa: E402  only now can it be found
+
+from mesh_pictures import write_picture  # noqa: E402  which needs it too
 
 SIZE = (1800, 900)
 METHODS = {None: 0, "coarse-to-fine": 1, "offset": 2}

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Pictures of a mesh: mesh_pictures.py FOLDER reads mesh.vtu and boundary.vtp there and writes section.png, a plane cut
-with mesh lines, and surface.png, the boundary coloured by patch. Run with pvpython; without a display, under xvfb-run."""
+with mesh lines, and surface.png, the boundary coloured by patch. Run with pvpython and build/lib/python3/dist-packages on
+PYTHONPATH; without a display, under xvfb-run."""
 import itertools
 import os
 import sys
@@ -8,10 +9,10 @@ import sys
 import numpy
 import vtkmodules.vtkRenderingFreeType  # noqa: F401  text
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  the renderer
-from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
+from projection_mesher import ProjectionMesherFilters as pm
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkLookupTable
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPlane, vtkPolyData
-from vtkmodules.vtkFiltersCore import vtkCutter, vtkThreshold
+from vtkmodules.vtkFiltersCore import vtkExtractEdges, vtkThreshold
 from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
 from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
@@ -58,80 +59,47 @@ def actor_of(data, table=None):
 
 
 # --------------------------------------------------------------------------------------------------- the section
-def cell_lines(cut):
-    """The edges of a cut that two different cells, or one cell and nothing, share: the mesh lines, whatever triangles
-    the cutter made of a cell."""
-    connectivity = vtk_to_numpy(cut.GetPolys().GetConnectivityArray())
-    offsets = vtk_to_numpy(cut.GetPolys().GetOffsetsArray())
-    lengths = numpy.diff(offsets)
-    cell = numpy.repeat(vtk_to_numpy(cut.GetCellData().GetArray("Cell")), lengths)
-    following = numpy.arange(len(connectivity)) + 1
-    following[offsets[1:] - 1] = offsets[:-1]
-    ends = numpy.sort(numpy.stack([connectivity, connectivity[following]], axis=1), axis=1)
-    rows = numpy.unique(numpy.column_stack([ends, cell]), axis=0, return_counts=True)
-    inside = rows[1] > 1  # both sides in one cell
-    ends = numpy.unique(rows[0][~inside][:, :2], axis=0).astype(numpy.int64)
-    return poly_lines(cut.GetPoints(), ends)
-
-
-def poly_lines(points, ends):
-    cells = vtkCellArray()
-    connectivity = numpy_to_vtkIdTypeArray(numpy.ascontiguousarray(ends).ravel(), deep=True)
-    offsets = numpy_to_vtkIdTypeArray(numpy.arange(0, 2 * len(ends) + 1, 2), deep=True)
-    cells.SetData(offsets, connectivity)
-    lines = vtkPolyData()
-    lines.SetPoints(points)
-    lines.SetLines(cells)
-    return lines
-
-
 def cut_grid(grid, axis, position):
-    """The cells' polygons in the plane, with the cells' ids and whether they are layer cells."""
-    ids = numpy_to_vtkIdTypeArray(numpy.arange(grid.GetNumberOfCells()), deep=True)
-    ids.SetName("Cell")
-    grid.GetCellData().AddArray(ids)
-    plane = vtkPlane()
-    plane.SetNormal(*(1.0 if a == axis else 0.0 for a in range(3)))
-    plane.SetOrigin(*(position if a == axis else 0.0 for a in range(3)))
-    cutter = vtkCutter()
-    cutter.SetCutFunction(plane)
-    cutter.SetInputData(grid)
-    cutter.GenerateTrianglesOff()
-    cutter.Update()
-    cut = cutter.GetOutput()
+    """The cells' polygons in a plane square to an axis, coloured by whether they are layer cells."""
+    slicer = pm.vtkMeshSlice()
+    slicer.SetInputData(grid)
+    slicer.GetPlane().SetNormal(*(1.0 if a == axis else 0.0 for a in range(3)))
+    slicer.GetPlane().SetOrigin(*(position if a == axis else 0.0 for a in range(3)))
+    slicer.Update()
+    cut = slicer.GetOutput()
+    if cut.GetNumberOfCells() == 0:
+        raise RuntimeError("the section is empty")
     layer = cut.GetCellData().GetArray("Layer")
-    kind = vtk_to_numpy(layer) > 0 if layer else numpy.zeros(cut.GetNumberOfCells(), bool)
-    kind = numpy_to_vtk(kind.astype(numpy.float32), deep=True)
-    kind.SetName("Kind")
-    cut.GetCellData().SetScalars(kind)
+    colour_cells(cut, vtk_to_numpy(layer) > 0 if layer else numpy.zeros(cut.GetNumberOfCells(), bool))
     return cut
 
 
-def clear_position(grid, axis, middle, window):
-    """Where near the middle the plane is farthest from any point: a cutter makes a mess of cells it only grazes."""
-    x = vtk_to_numpy(grid.GetPoints().GetData())[:, axis]
-    x = numpy.sort(x[numpy.abs(x - middle) < window])
-    if len(x) < 2:
-        return middle
-    widest = numpy.argmax(numpy.diff(x))
-    return (x[widest] + x[widest + 1]) / 2
+def colour_cells(cut, values):
+    colours = numpy_to_vtk(values.astype(numpy.float32), deep=True)
+    colours.SetName("Colour")
+    cut.GetCellData().SetScalars(colours)
+
+
+def section_actors(cut, colours=CELL_COLOURS):
+    """The polygons of a cut in their colours, and the mesh lines."""
+    edges = vtkExtractEdges()
+    edges.SetInputData(cut)
+    edges.Update()
+    face, lines = actor_of(cut, lookup(colours, len(colours))), actor_of(edges.GetOutput())
+    lines.GetProperty().SetColor(*LINES)
+    lines.GetProperty().SetLineWidth(1.2)
+    for actor in (face, lines):
+        actor.GetProperty().LightingOff()
+    return [face, lines]
 
 
 def section(grid, focus, path):
     """A plane through the middle of focus, square to its shortest side."""
     sides = [focus[2 * a + 1] - focus[2 * a] for a in range(3)]
     axis = sides.index(min(sides))
-    position = clear_position(grid, axis, focus[2 * axis] + 0.5 * sides[axis], 0.04 * sides[axis])
-    cut = cut_grid(grid, axis, position)
-    if cut.GetNumberOfCells() == 0:
-        raise RuntimeError("the section is empty")
-    face = actor_of(cut, lookup(CELL_COLOURS, 2))
-    face.GetProperty().LightingOff()
-    lines = actor_of(cell_lines(cut))
-    lines.GetProperty().SetColor(*LINES)
-    lines.GetProperty().SetLineWidth(1.2)
-    lines.GetProperty().LightingOff()
-    renderer = new_renderer([face, lines, text_actor(f"{'xyz'[axis]} = {position:.4g}", 24, 20)])
+    position = focus[2 * axis] + 0.5 * sides[axis]
+    actors = section_actors(cut_grid(grid, axis, position))
+    renderer = new_renderer(actors + [text_actor(f"{'xyz'[axis]} = {position:.4g}", 24, 20)])
     renderer.GetActiveCamera().ParallelProjectionOn()
     direction, up = (((1, 0, 0), (0, 0, 1)), ((0, -1, 0), (0, 0, 1)), ((0, 0, 1), (0, 1, 0)))[axis]
     save(renderer, numpy.array(list(itertools.product(*numpy.reshape(focus, (3, 2))))), direction, up, path)

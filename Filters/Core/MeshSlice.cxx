@@ -87,11 +87,18 @@ class CellCutter {
                         down = turns_[apart ? 2 * r + 1 : (2 * r + 2 * runs - 1) % (2 * runs)];
       Link link{placeOf(face[up], face[(up + 1) % n]), placeOf(face[down], face[(down + 1) % n])};
       link.first = static_cast<Id>(between_.size());
-      for (std::size_t i = (up + 1) % n; apart && i != (down + 1) % n; i = (i + 1) % n) {
-        if (height(face[i]) == 0) between_.push_back(face[i]);
-      }
+      if (apart) followPlane(face, (up + 1) % n, (down + 1) % n);
       link.last = static_cast<Id>(between_.size());
       links_.push_back(link);
+    }
+  }
+
+  /// Adds the points of a face from one to before another to the way, when all of them lie in the plane.
+  void followPlane(Span<Id> face, std::size_t from, std::size_t to) {
+    const std::size_t n = face.size(), before = between_.size();
+    for (std::size_t i = from; i != to; i = (i + 1) % n) {
+      if (height(face[i]) > 0) return between_.resize(before);
+      between_.push_back(face[i]);
     }
   }
 

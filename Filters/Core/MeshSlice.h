@@ -12,9 +12,9 @@
 // above it has the polygon: a section in a plane of symmetry is complete whichever way its normal points.
 //
 // Faces may be warped and need not be convex: of a face that the plane crosses four times or more, its centre
-// says which of the two parts hangs together. A link follows the points of its face that lie in the plane.
-// The way a face runs (seen from inside or outside) does not matter. A cell whose faces are not closed gives
-// the polygon of what there is.
+// says which of the two parts hangs together. Where a face reaches up to the plane and no farther, its link
+// runs through its points there. The way a face runs (seen from inside or outside) does not matter. A cell
+// whose faces are not closed gives the polygon of what there is.
 //
 // Work is linear in the cells that are given but for sorting the crossings; in parallel, with the same bits
 // for any number of threads.

@@ -82,15 +82,8 @@ class View:
 
     def section(self, folder):
         grid = pictures.read(vtkXMLUnstructuredGridReader(), os.path.join(folder, "mesh.vtu"))
-        axis, position = self.cut
-        window = 0.003 * (grid.GetBounds()[2 * axis + 1] - grid.GetBounds()[2 * axis])
-        cut = pictures.cut_grid(grid, axis, pictures.clear_position(grid, axis, position, window))
-        face = pictures.actor_of(cut, pictures.lookup(pictures.CELL_COLOURS, 2))
-        lines = pictures.actor_of(pictures.cell_lines(cut))
-        face.GetProperty().LightingOff()
-        lines.GetProperty().SetColor(*pictures.LINES)
-        lines.GetProperty().LightingOff()
-        return [face, lines], cut.GetBounds()
+        cut = pictures.cut_grid(grid, *self.cut)
+        return pictures.section_actors(cut), cut.GetBounds()
 
 
 BELOW = (-0.5, -0.8, -0.7)

@@ -298,6 +298,27 @@ TEST(MeshSlice, PointsInThePlaneOnASideStayInThePolygon) {
   EXPECT_NEAR(c.area(), 1.05, 1e-12);
 }
 
+TEST(MeshSlice, ACellWithAStepInThePlaneIsNotCutAlongTheStep) {
+  // An L of height 2 and a cube that fills it up to a block; the step's face is the cube's top.
+  Cells cells;
+  const std::vector<std::pair<double, double>> outline{{0, 0}, {1, 0}, {1, -1}, {2, -1},
+                                                       {2, 1}, {0, 1}, {0, -1}};
+  for (const double y : {1.0, 0.0}) {
+    for (const auto& [x, z] : outline) cells.points.push_back({x, y, z});
+  }
+  cells.add(testing::prism({0, 1, 2, 3, 4, 5}, {7, 8, 9, 10, 11, 12}));
+  cells.add(testing::prism({0, 6, 2, 1}, {7, 13, 9, 8}));
+  const Cut above = cut(cells, planeAt(Vec3::Zero(), Vec3::UnitZ()));
+  ASSERT_EQ(above.section.polygons.rows(), 2);
+  EXPECT_NEAR(above.areas[0], 1, 1e-12);
+  EXPECT_NEAR(above.areas[1], 1, 1e-12);
+  EXPECT_EQ(freeSides(above.section), 6);
+  const Cut below = cut(cells, planeAt(Vec3::Zero(), -Vec3::UnitZ()));
+  ASSERT_EQ(below.section.polygons.rows(), 1);
+  EXPECT_EQ(below.section.cell[0], 0);
+  EXPECT_NEAR(below.areas[0], 2, 1e-12);
+}
+
 TEST(MeshSlice, AnOpenCellGivesWhatThereIs) {
   Cells cells;
   const auto [bottom, top] = addBox(cells, {0, 0, 0}, {1, 1, 1});
