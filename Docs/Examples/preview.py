@@ -9,8 +9,7 @@ import argparse
 import os
 import time
 
-from paraview.simple import (ColorBy, CreateView, GetColorTransferFunction, LoadPlugin, OutputPort, SaveScreenshot,
-                             Show, Slice)
+from paraview.simple import ColorBy, CreateView, GetColorTransferFunction, LoadPlugin, OutputPort, SaveScreenshot, Show
 
 
 def arguments():
@@ -57,26 +56,24 @@ def measure(octree, front, sizes):
               f"{clock + front_clock:10.2f}", flush=True)
 
 
-def draw(front, path):
+def draw(front, cut, path):
+    """cut: a Mesh Slice of the front."""
     view = CreateView("RenderView")
     view.ViewSize = [1400, 900]
     view.OrientationAxesVisibility = 0
     view.UseColorPaletteForBackground = 0
     view.Background = [0.96, 0.96, 0.95]
     bounds = front.GetDataInformation().GetBounds()
-    cut = Slice(Input=front)
-    cut.SliceType.Normal = [0, 1, 0]
-    cut.SliceType.Origin = [(bounds[2 * a] + bounds[2 * a + 1]) / 2 + 1e-3 for a in range(3)]
-    cut.Triangulatetheslice = 0
+    middle = [(bounds[2 * a] + bounds[2 * a + 1]) / 2 for a in range(3)]
+    cut.Plane.Origin, cut.Plane.Normal = middle, [0, 1, 0]
     shown = Show(cut, view)
-    shown.Representation = "Surface With Edges"
     ColorBy(shown, ("CELLS", "Level"))
     shown.Ambient, shown.Diffuse = 1, 0  # the colours as they are
     shown.EdgeColor = [0.16, 0.18, 0.21]
     shown.RescaleTransferFunctionToDataRange(False, True)
     GetColorTransferFunction("Level").ApplyPreset("Cool to Warm", True)
-    view.CameraPosition = [cut.SliceType.Origin[0], bounds[2] - 10 * (bounds[3] - bounds[2]), cut.SliceType.Origin[2]]
-    view.CameraFocalPoint = list(cut.SliceType.Origin)
+    view.CameraPosition = [middle[0], bounds[2] - 10 * (bounds[3] - bounds[2]), middle[2]]
+    view.CameraFocalPoint = middle
     view.CameraViewUp = [0, 0, 1]
     view.CameraParallelProjection = 1
     view.CameraParallelScale = 0.55 * max(bounds[5] - bounds[4], (bounds[1] - bounds[0]) * 9 / 14)
@@ -90,7 +87,8 @@ def main():
     octree, front = pipeline(options, filters)
     measure(octree, front, options.sizes)
     if options.picture:
-        draw(OutputPort(front, 0), options.picture)
+        mesh = OutputPort(front, 0)
+        draw(mesh, filters["MeshSlice"](Input=mesh), options.picture)
 
 
 if __name__ == "__main__":

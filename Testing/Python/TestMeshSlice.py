@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Mesh Slice: areas of sections against those of the geometry, cells and data it carries, other programs' grids."""
+import os
+import shutil
+import subprocess
+import tempfile
 import unittest
 
 import numpy as np
@@ -264,6 +268,17 @@ class MeshSlice(unittest.TestCase):
             self.assertEqual(len(messages.errors), 1)
             self.assertIn("normal", messages.errors[0])
             self.assertEqual(cut.GetOutput().GetNumberOfCells(), 0)
+
+    def test_pictures_of_cross_sections(self):
+        if not shutil.which("xvfb-run"):
+            self.skipTest("pictures need xvfb-run")
+        script = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Docs", "Examples", "cross_sections.py")
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run(["xvfb-run", "-a", "pvpython", script, folder, "section_bowl"], check=True, capture_output=True)
+            with open(os.path.join(folder, "section_bowl.png"), "rb") as file:
+                head = file.read(24)
+        self.assertEqual(head[1:4], b"PNG")
+        self.assertEqual([int.from_bytes(head[i:i + 4], "big") for i in (16, 20)], [1800, 1240])
 
 
 if __name__ == "__main__":
