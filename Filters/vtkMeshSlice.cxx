@@ -90,11 +90,14 @@ pm::SlicePlane planeOf(vtkPlane* plane) {
 
 /// What rounding of the coordinates can make of a distance to the plane.
 double roundingOf(vtkPoints* points, const pm::SlicePlane& plane) {
-  double bounds[6];
+  double bounds[6], sum = 0;
   points->GetBounds(bounds);
-  double largest = plane.origin.cwiseAbs().maxCoeff();
-  for (const double b : bounds) largest = std::max(largest, std::abs(b));
-  return largest * (points->GetDataType() == VTK_FLOAT ? 4 * double(FLT_EPSILON) : 1e-12);
+  for (int a = 0; a < 3; ++a) {
+    const double largest =
+        std::max({std::abs(bounds[2 * a]), std::abs(bounds[2 * a + 1]), std::abs(plane.origin[a])});
+    sum += std::abs(plane.normal[a]) * largest;
+  }
+  return sum * (points->GetDataType() == VTK_FLOAT ? 4 * double(FLT_EPSILON) : 1e-12);
 }
 
 std::vector<double> signedDistances(vtkPoints* points, const pm::SlicePlane& plane) {
