@@ -3,6 +3,7 @@
 with mesh lines, and surface.png, the boundary coloured by patch. Run with pvpython and build/lib/python3/dist-packages on
 PYTHONPATH; without a display, under xvfb-run."""
 import itertools
+import math
 import os
 import sys
 
@@ -94,10 +95,10 @@ def section_actors(cut, colours=CELL_COLOURS):
 
 
 def section(grid, focus, path):
-    """A plane through the middle of focus, square to its shortest side."""
+    """A plane through the middle of focus, square to its shortest side, at a round number."""
     sides = [focus[2 * a + 1] - focus[2 * a] for a in range(3)]
     axis = sides.index(min(sides))
-    position = focus[2 * axis] + 0.5 * sides[axis]
+    position = round(focus[2 * axis] + 0.5 * sides[axis], 3 - math.floor(math.log10(sides[axis])))
     actors = section_actors(cut_grid(grid, axis, position))
     renderer = new_renderer(actors + [text_actor(f"{'xyz'[axis]} = {position:.4g}", 24, 20)])
     renderer.GetActiveCamera().ParallelProjectionOn()

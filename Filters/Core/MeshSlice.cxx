@@ -163,18 +163,18 @@ class CellCutter {
 
   /// The same across the loop's beginning.
   void closeLoop() {
-    std::size_t first = 0, last = loop_.size();
-    while (last - first > 1) {
-      if (loop_[first] == loop_[last - 1] || loop_[first] == loop_[last - 2]) {
-        last -= loop_[first] == loop_[last - 1] ? 1 : 2;
-        last = std::max(last, first + 1);
-      } else if (loop_[first + 1] == loop_[last - 1]) {
-        first += 1, last -= 1;
+    for (std::size_t n = loop_.size(); n > 2; n = loop_.size()) {
+      if (loop_[0] == loop_[n - 1]) {
+        loop_.pop_back();
+      } else if (loop_[0] == loop_[n - 2]) {
+        loop_.resize(n - 2);
+      } else if (loop_[1] == loop_[n - 1]) {
+        loop_.pop_back();
+        loop_.erase(loop_.begin());
       } else {
-        break;
+        return;
       }
     }
-    loop_.assign(loop_.begin() + first, loop_.begin() + last);
   }
 
   const Csr<Id>& faces_;
