@@ -14,7 +14,8 @@
 // Faces may be warped and need not be convex: of a face that the plane crosses four times or more, its centre
 // says which of the two parts hangs together. Where a face reaches up to the plane and no farther, its link
 // runs through its points there. The way a face runs (seen from inside or outside) does not matter. A cell
-// whose faces are not closed gives the polygon of what there is.
+// whose faces are not closed gives the polygon of what there is. Links are straight: at the corner of a cell
+// so warped that two of them cross, its polygon lies on a neighbour's.
 //
 // Work is linear in the cells that are given but for sorting the crossings; in parallel, with the same bits
 // for any number of threads.
