@@ -18,6 +18,7 @@
 #include "vtkCutter.h"
 #include "vtkDemandDrivenPipeline.h"
 #include "vtkExtractCells.h"
+#include "vtkFieldData.h"
 #include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
@@ -216,7 +217,6 @@ void appendOthers(vtkUnstructuredGrid* grid, const std::vector<vtkIdType>& cells
 void vtkMeshSlice::Run(vtkInformationVector** inputs, vtkUnstructuredGrid*, vtkPolyData*,
                        pm::Monitor& monitor) {
   vtkDataObject* output = this->GetOutputDataObject(0);
-  output->Initialize();
   const pm::SlicePlane plane = planeOf(this->Plane);
   vtkUnstructuredGrid* grid = vtkUnstructuredGrid::GetData(inputs[0]);
   if (grid->GetNumberOfCells() == 0 || grid->GetNumberOfPoints() == 0) return;
@@ -254,6 +254,8 @@ void vtkMeshSlice::Run(vtkInformationVector** inputs, vtkUnstructuredGrid*, vtkP
     std::sort(cells.begin(), cells.end());
     cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
     extract(grid, cells, vtkUnstructuredGrid::SafeDownCast(output));
+    // No whole mesh of the suite any more, but cells that Mesh Quality Report may measure.
+    output->GetFieldData()->RemoveArray("ProjectionMesherStamp");
   }
 }
 

@@ -75,6 +75,10 @@ def outline_area(boundary, normal, origin):
     return 0.5 * np.linalg.norm(np.cross(points[ends[:, 0]] - middle, points[ends[:, 1]] - middle), axis=1).sum()
 
 
+def arrays_of(data):
+    return [data.GetFieldData().GetArrayName(i) for i in range(data.GetFieldData().GetNumberOfArrays())]
+
+
 def one_cell(kind, points, faces=None):
     grid, at = vtkUnstructuredGrid(), vtkPoints()
     for p in points:
@@ -203,6 +207,17 @@ class MeshSlice(unittest.TestCase):
             np.testing.assert_array_equal(ids, np.sort(vtk_to_numpy(section.GetCellData().GetArray(names))))
             np.testing.assert_array_equal(vtk_to_numpy(cells.GetCellTypesArray()),
                                           vtk_to_numpy(self.grid.GetCellTypesArray())[ids])
+
+    def test_cells_of_a_crinkle_slice_can_be_measured(self):
+        cells = sliced(self.grid, (0, 0, 1), (0, 0, 0.01), crinkle=True)
+        report = pm.vtkMeshQualityReport()
+        report.SetInputDataObject(cells)
+        report.Update()
+        self.assertEqual(report.GetOutput(0).GetNumberOfCells(), cells.GetNumberOfCells())
+        self.assertIn("ProjectionMesherStamp", arrays_of(self.grid))  # which the input keeps
+
+    def test_names_of_patches_stay(self):
+        self.assertIn("PatchNames", arrays_of(sliced(self.grid, (0, 0, 1), (0, 0, 0.01))))
 
     def test_tetrahedra_agree_with_vtk(self):
         """Where VTK's fast cutter works the section is the same; also an input in single precision."""
