@@ -2,44 +2,28 @@
 #include "FoamWriter.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <memory>
 #include <numeric>
 #include <unordered_set>
 
+#include "OutputFile.h"
+
 namespace pm {
 namespace {
 
 namespace fs = std::filesystem;
-using Buffer = fmt::memory_buffer;
+constexpr const char* kCaption = "writing the polyMesh folder";
 
-[[noreturn]] void failed(const std::string& path, int code) {
-  throw InputError("Cannot write " + path + ": " + std::strerror(code) +
-                   ". Choose another folder or free some space on the disk.");
-}
-
-/// One file of the folder, written beside its final place; publish() puts it there, the destructor drops it.
-class FoamFile {
+/// One file of the folder.
+class FoamFile : public OutputFile {
  public:
   FoamFile(const fs::path& directory, const std::string& object)
-      : object_(object), path_((directory / object).string()), part_(path_ + ".part") {
-    file_ = std::fopen(part_.c_str(), "wb");
-    if (!file_) failed(path_, errno);
-  }
-  FoamFile(const FoamFile&) = delete;
-  FoamFile& operator=(const FoamFile&) = delete;
-  ~FoamFile() {
-    if (file_) std::fclose(file_);
-    std::error_code ignored;
-    if (!published_) fs::remove(part_, ignored);
-  }
+      : OutputFile((directory / object).string()), object_(object) {}
 
   void header(const char* foamClass, bool binary, const std::string& note = {}) {
     text(fmt::format("FoamFile\n{{\n    version     2.0;\n    format      {};\n    class       {};\n",
@@ -48,56 +32,27 @@ class FoamFile {
     text("    arch        \"LSB;label=32;scalar=64\";\n    location    \"constant/polyMesh\";\n");
     text(fmt::format("    object      {};\n}}\n\n", object_));
   }
-  void text(const std::string& s) { bytes(s.data(), s.size()); }
-  void bytes(const void* data, std::size_t count) {
-    if (count > 0 && std::fwrite(data, 1, count, file_) != count) failed(path_, errno);
-  }
   template <class T>
   void binaryList(const std::vector<T>& values) {
     text(fmt::format("{}\n(", values.size()));
     bytes(values.data(), values.size() * sizeof(T));
     text(")\n");
   }
-  void close() {
-    std::FILE* file = file_;
-    file_ = nullptr;
-    if (std::fclose(file) != 0) failed(path_, errno);
-  }
-  void publish() {
-    std::error_code code;
-    fs::rename(part_, path_, code);
-    if (code) failed(path_, code.value());
-    published_ = true;
-  }
 
  private:
-  std::string object_, path_, part_;
-  std::FILE* file_ = nullptr;
-  bool published_ = false;
+  std::string object_;
 };
 
-/// Writes "count ( ... )" where format(i, buffer) appends line i; lines are formatted in parallel, written in
-/// order.
+/// Writes "count ( ... )" where format(i, buffer) appends line i.
 template <class Format>
 void asciiList(FoamFile& file, Id count, Monitor& monitor, double fraction, const Format& format) {
-  constexpr Id kBlock = 16384, kBatch = 16;
+  PartMonitor part(monitor, fraction, fraction);
   file.text(fmt::format("{}\n(\n", count));
-  std::vector<Buffer> buffers(kBatch);
-  for (Id start = 0; start < count; start += kBlock * kBatch) {
-    monitor.check(fraction, "writing the polyMesh folder");
-    const Id end = count - start < kBlock * kBatch ? count : start + kBlock * kBatch;
-    const Id blocks = (end - start + kBlock - 1) / kBlock;
-    tbb::parallel_for(Id(0), blocks, [&](Id b) {
-      const Id first = start + b * kBlock, last = std::min(end, first + kBlock);
-      buffers[b].clear();
-      for (Id i = first; i < last; ++i) format(i, buffers[b]);
-    });
-    for (Id b = 0; b < blocks; ++b) file.bytes(buffers[b].data(), buffers[b].size());
-  }
+  writeItems(file, count, part, kCaption, format);
   file.text(")\n");
 }
 
-void append(Buffer& out, Id value) {
+void append(TextBuffer& out, Id value) {
   const fmt::format_int text(value);
   out.append(text.data(), text.data() + text.size());
 }
@@ -105,7 +60,7 @@ void append(Buffer& out, Id value) {
 void labelList(FoamFile& file, const std::vector<Id>& values, bool binary, Monitor& monitor,
                double fraction) {
   if (binary) return file.binaryList(values);
-  asciiList(file, static_cast<Id>(values.size()), monitor, fraction, [&](Id i, Buffer& out) {
+  asciiList(file, static_cast<Id>(values.size()), monitor, fraction, [&](Id i, TextBuffer& out) {
     append(out, values[i]);
     out.push_back('\n');
   });
@@ -135,7 +90,7 @@ void writePoints(const PolyMesh& mesh, FoamFile& file, bool binary, Monitor& mon
   static_assert(sizeof(Vec3) == 3 * sizeof(double), "points are written as they lie in memory");
   file.header("vectorField", binary);
   if (binary) return file.binaryList(mesh.points);
-  asciiList(file, static_cast<Id>(mesh.points.size()), monitor, 0.1, [&](Id i, Buffer& out) {
+  asciiList(file, static_cast<Id>(mesh.points.size()), monitor, 0.1, [&](Id i, TextBuffer& out) {
     const Vec3& p = mesh.points[i];
     fmt::format_to(std::back_inserter(out), "({} {} {})\n", p.x(), p.y(), p.z());
   });
@@ -144,7 +99,7 @@ void writePoints(const PolyMesh& mesh, FoamFile& file, bool binary, Monitor& mon
 void writeFaces(const PolyMesh& mesh, const FaceOrder& order, FoamFile& file, bool binary, Monitor& monitor) {
   file.header(binary ? "faceCompactList" : "faceList", binary);
   if (!binary) {
-    asciiList(file, mesh.faceCount(), monitor, 0.5, [&](Id i, Buffer& out) {
+    asciiList(file, mesh.faceCount(), monitor, 0.5, [&](Id i, TextBuffer& out) {
       const Span<Id> row = mesh.faces[order.faces[i]];
       append(out, static_cast<Id>(row.size()));
       char separator = '(';
@@ -261,12 +216,12 @@ void writePolyMesh(const PolyMesh& mesh, const std::string& directory, bool bina
   const fs::path folder(directory);
   std::error_code code;
   fs::create_directories(folder, code);
-  if (code) failed(directory, code.value());
+  if (code) cannotWrite(directory, code.value());
 
   const FaceOrder order = orderByPatch(mesh);
   std::vector<std::unique_ptr<FoamFile>> files;
   const auto open = [&](const char* name) -> FoamFile& {
-    monitor.check(std::min(0.95, 0.2 * static_cast<double>(files.size())), "writing the polyMesh folder");
+    monitor.check(std::min(0.95, 0.2 * static_cast<double>(files.size())), kCaption);
     files.push_back(std::make_unique<FoamFile>(folder, name));
     return *files.back();
   };
@@ -287,7 +242,7 @@ void writePolyMesh(const PolyMesh& mesh, const std::string& directory, bool bina
   const bool hasZones = mesh.zoneNames.size() > 1;
   if (hasZones) writeCellZones(mesh, open("cellZones"), binary, monitor);
   for (const auto& file : files) file->close();
-  monitor.check(1, "writing the polyMesh folder");
+  monitor.check(1, kCaption);
   for (const auto& file : files) file->publish();
   removeStale(folder, hasZones);
 }
