@@ -272,7 +272,7 @@ FluentBoundary fluentBoundary(const PolyMesh& mesh, Id patchId) {
   std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
   const auto has = [&](const char* word) { return name.find(word) != std::string::npos; };
   if (has("inlet") || has("inflow")) return {kVelocityInlet, "velocity-inlet"};
-  if (has("farfield")) return {kPressureFarField, "pressure-far-field"};
+  if (has("farfield") || name == "far") return {kPressureFarField, "pressure-far-field"};
   return {kPressureOutlet, "pressure-outlet"};
 }
 

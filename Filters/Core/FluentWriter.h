@@ -45,8 +45,8 @@ struct FluentBoundary {
 };
 
 /// What patch `patchId` becomes: a wall where foamPatchType says wall. Of the others a name with inlet or
-/// inflow makes a velocity-inlet, one with farfield a pressure-far-field; the rest, domain sides too, are
-/// pressure-outlets, which flow may pass either way.
+/// inflow makes a velocity-inlet, one with farfield, or "far" (the far sphere), a pressure-far-field; the
+/// rest, domain sides too, are pressure-outlets, which flow may pass either way.
 FluentBoundary fluentBoundary(const PolyMesh& mesh, Id patchId);
 
 /// Writes the mesh. Zones of faces: the interior of each zone of cells, then each patch. Fluent wants one

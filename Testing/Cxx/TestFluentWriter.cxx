@@ -362,12 +362,14 @@ TEST_F(FluentWriter, TypesAreListedWhenTheyDiffer) {
 
 TEST(FluentBoundary, NamesTellWhatFlowsThrough) {
   PolyMesh mesh;
-  mesh.patchNames = {"Inlet_1", "main-outlet", "outer wall", "xmin", "myFarField", "inflow", "opening"};
-  mesh.patchTypes = {"wall", "wall", "wall", "patch", "wall", "patch", "wall"};
+  mesh.patchNames = {"Inlet_1",    "main-outlet", "outer wall", "xmin",
+                     "myFarField", "inflow",      "opening",    "far"};
+  mesh.patchTypes = {"wall", "wall", "wall", "patch", "wall", "patch", "wall", "patch"};
   std::vector<std::string> words;
-  for (Id patch = 0; patch < 7; ++patch) words.push_back(fluentBoundary(mesh, patch).word);
+  for (Id patch = 0; patch < 8; ++patch) words.push_back(fluentBoundary(mesh, patch).word);
   EXPECT_EQ(words, (std::vector<std::string>{"velocity-inlet", "pressure-outlet", "wall", "pressure-outlet",
-                                             "pressure-far-field", "velocity-inlet", "pressure-outlet"}));
+                                             "pressure-far-field", "velocity-inlet", "pressure-outlet",
+                                             "pressure-far-field"}));
   EXPECT_EQ(fluentBoundary(mesh, 0).type, 10);
   EXPECT_EQ(fluentBoundary(mesh, 2).type, 3);
 }

@@ -165,6 +165,18 @@ class TestFluentWriter(unittest.TestCase):
         blocks = read_by_vtk(self.path)
         self.assertEqual([blocks.GetBlock(i).GetNumberOfCells() for i in range(2)], np.bincount(zone).tolist())
 
+    def test_paraview_offers_and_saves_it(self):
+        from paraview import simple
+        simple.LoadPlugin(os.environ["PROJECTIONMESHER_PLUGIN"], remote=False, ns=globals())
+        mesh = ProjectionMesh(Geometry=simple.Sphere(ThetaResolution=24, PhiResolution=24), FeatureSize=0.1)  # noqa: F821
+        factory = simple.servermanager.vtkSMProxyManager.GetProxyManager().GetWriterFactory()
+        self.assertIn("Fluent mesh(*.msh )", factory.GetSupportedFileTypes(mesh.SMProxy, 0))
+        for binary, index in ((1, b"(3013 "), (0, b"(13 (3 ")):
+            simple.SaveData(self.path, proxy=simple.OutputPort(mesh, 0), Binary=binary)
+            file = FluentFile(self.path)
+            self.assertEqual(len(file.types), mesh.GetDataInformation().GetNumberOfCells())
+            self.assertIn(index, file.data)
+
     def test_same_bytes_again_and_through_a_saved_grid(self):
         from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
         saved = self.path.replace(".msh", ".vtu")
@@ -188,12 +200,16 @@ class TestFluentWriter(unittest.TestCase):
         self.assertIn("Octree Decompose", self.messages.errors[0])
         with open(self.path, "rb") as file:
             self.assertEqual(file.read(), good)
-        empty = pm.vtkFluentWriter()
-        empty.SetInputData(vtkUnstructuredGrid())
-        empty.SetFileName(self.path)
-        messages = Messages(empty)
-        empty.Write()
-        self.assertEqual(len(messages.errors), 1)
+        foreign = vtkUnstructuredGrid()  # of another tool: without what the suite's grids carry
+        foreign.CopyStructure(self.stages["layers"].GetOutputDataObject(0))
+        for grid in (vtkUnstructuredGrid(), foreign):
+            writer = pm.vtkFluentWriter()
+            writer.SetInputData(grid)
+            writer.SetFileName(self.path)
+            messages = Messages(writer)
+            writer.Write()
+            self.assertEqual(len(messages.errors), 1)
+            self.assertIn("The Fluent writer", messages.errors[0])
         self.path = ""
         self.write(self.stages["layers"])
         self.assertIn("FileName", self.messages.errors[0])
