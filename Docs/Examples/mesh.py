@@ -65,6 +65,8 @@ def parser():
     p.add_argument("--layers", type=int, metavar="N", help="boundary layers (default: 3; 0: keep the one prism)")
     p.add_argument("--first-height", type=float, metavar="H", help="height of the cell at the wall")
     p.add_argument("--expansion", type=float, metavar="R", help="height ratio of neighbouring layers (default: 1.2)")
+    p.add_argument("--also", choices=("msh", "stl"), action="append", default=[],
+                   help="write mesh.msh for Fluent, or boundary.stl with a solid for each patch, too; may be repeated")
     p.add_argument("--threads", type=int, default=0, metavar="N", help="threads to use (default: all)")
     p.add_argument("--stop-after", type=stage_index, default=len(STAGES) - 1, metavar="STAGE",
                    help="last stage to run: " + ", ".join(SHORT_NAMES))
@@ -364,6 +366,11 @@ def write_results(pm, runner, options, last):
         writer.SetDirectory(os.path.join(options.output, "polyMesh"))
         writer.BinaryOff()
         runner.run("write polyMesh", writer, writer.Write)
+        others = {"msh": (pm.vtkFluentWriter(), 0, "mesh.msh"), "stl": (pm.vtkSurfaceWriter(), 1, "boundary.stl")}
+        for writer, port, name in (others[kind] for kind in options.also):
+            writer.SetInputDataObject(last.GetOutputDataObject(port))
+            writer.SetFileName(os.path.join(options.output, name))
+            runner.run(f"write {name}", writer, writer.Write)
 
 
 def make_pictures(options):
@@ -381,7 +388,8 @@ def clear_output(options):
     """Results of an earlier run must not be taken for this one's."""
     try:
         os.makedirs(options.output, exist_ok=True)
-        for name in ("mesh.vtu", "boundary.vtp", "leaks.vtp", "unresolved.vtp", "section.png", "surface.png"):
+        for name in ("mesh.vtu", "mesh.msh", "boundary.vtp", "boundary.stl", "leaks.vtp", "unresolved.vtp", "section.png",
+                     "surface.png"):
             if os.path.exists(os.path.join(options.output, name)):
                 os.remove(os.path.join(options.output, name))
         shutil.rmtree(os.path.join(options.output, "polyMesh"), ignore_errors=True)

@@ -102,9 +102,10 @@ class MeshCommand(unittest.TestCase):
 
     # ------------------------------------------------------------------------------------------------- good input
     def test_results_and_report(self):
-        done = mesh(CLEAN, "-o", self.out, "--feature-size", "0.005", "--layers", "2", "--threads", "1")
+        done = mesh(CLEAN, "-o", self.out, "--feature-size", "0.005", "--layers", "2", "--threads", "1",
+                    "--also", "msh", "--also", "stl")
         self.assertEqual(done.returncode, 0, done.stderr)
-        for name in ("mesh.vtu", "boundary.vtp", "polyMesh/points", "polyMesh/faces", "polyMesh/owner",
+        for name in ("mesh.vtu", "boundary.vtp", "mesh.msh", "boundary.stl", "polyMesh/points", "polyMesh/faces", "polyMesh/owner",
                      "polyMesh/neighbour", "polyMesh/boundary"):
             self.assertGreater(os.path.getsize(os.path.join(self.out, name)), 100, name)
         with open(os.path.join(self.out, "polyMesh", "boundary"), encoding="ascii") as file:
