@@ -50,34 +50,32 @@ struct Layout {
 };
 
 void nameZones(const PolyMesh& mesh, Layout& layout) {
-  const Id zones = layout.zones, patches = static_cast<Id>(mesh.patchNames.size());
+  const Id zones = layout.zones, keys = static_cast<Id>(layout.faces.start.size()) - 1;
+  const auto hasFaces = [&](Id key) { return layout.faces.start[key] < layout.faces.start[key + 1]; };
   layout.cellName = zones > 1 ? mesh.zoneNames : std::vector<std::string>{"fluid"};
-  std::vector<std::string> names;
-  for (Id patch = 0; patch < patches; ++patch) {
-    const auto first = layout.faces.start.begin() + (patch + 1) * zones;
+  layout.faceName.resize(keys);
+  for (Id z = 0; z < zones; ++z) layout.faceName[z] = "interior-" + layout.cellName[z];
+  // In one list: no two zones of a file may share a name, and a patch keeps its own when others need a
+  // number.
+  std::vector<std::string*> named;
+  for (Id patch = 0; patch < static_cast<Id>(mesh.patchNames.size()); ++patch) {
+    const Id first = (patch + 1) * zones;
     Id touched = 0;
-    for (Id z = 0; z < zones; ++z) touched += first[z] < first[z + 1];
+    for (Id key = first; key < first + zones; ++key) touched += hasFaces(key);
     for (Id z = 0; z < zones; ++z) {
-      names.push_back(mesh.patchNames[patch] + (touched > 1 ? "-" + layout.cellName[z] : ""));
+      std::string& name = layout.faceName[first + z];
+      name = mesh.patchNames[patch];
+      if (touched > 1) name += "-" + layout.cellName[z];
+      if (hasFaces(first + z)) named.push_back(&name);
     }
   }
-  // One list: no two zones of a file may share a name, and a patch keeps its own when others need a number.
-  std::vector<std::string> written;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const std::size_t key = zones + i;
-    if (layout.faces.start[key] < layout.faces.start[key + 1]) written.push_back(names[i]);
-  }
-  written.insert(written.end(), layout.cellName.begin(), layout.cellName.end());
-  for (const std::string& name : layout.cellName) written.push_back("interior-" + name);
-  written = foamPatchNames(written);
+  for (std::string& name : layout.cellName) named.push_back(&name);
+  for (Id z = 0; z < zones; ++z) named.push_back(&layout.faceName[z]);
 
-  auto next = written.begin();
-  layout.faceName.resize(zones * (patches + 1));
-  for (std::size_t key = zones; key < layout.faceName.size(); ++key) {
-    if (layout.faces.start[key] < layout.faces.start[key + 1]) layout.faceName[key] = *next++;
-  }
-  for (std::string& name : layout.cellName) name = *next++;
-  for (Id z = 0; z < zones; ++z) layout.faceName[z] = *next++;
+  std::vector<std::string> names;
+  for (const std::string* name : named) names.push_back(*name);
+  names = foamPatchNames(names);
+  for (std::size_t i = 0; i < named.size(); ++i) *named[i] = names[i];
 }
 
 Layout layOut(const PolyMesh& mesh) {
