@@ -84,6 +84,7 @@ class PathFinder {
   };
   void gather();
   void gatherNode(Id row, Block& block) const;
+  static void preferNearest(Block& block, std::size_t first);
   void addCorner(Id corner, Id row, Block& block) const;
   bool reachable(Id row, const Vec3& target) const;
   double penalty(Id row) const { return history_.penalty.empty() ? 0.0 : history_.penalty[row]; }
@@ -148,6 +149,18 @@ void PathFinder::addCorner(Id corner, Id row, Block& block) const {
     block.corners.push_back({d + kCornerShare * penalty(row), corner, row});
 }
 
+/// Of curves beside each other, each shall take the nodes on its side.
+void PathFinder::preferNearest(Block& block, std::size_t first) {
+  constexpr float kNotNearest = 1;  // extra cost over how much nearer another curve is
+  float least = std::numeric_limits<float>::infinity();
+  for (std::size_t i = first; i < block.curves.size(); ++i)
+    least = std::min(least, block.curves[i].second.distance);
+  for (std::size_t i = first; i < block.curves.size(); ++i) {
+    float& cost = block.curves[i].second.distance;
+    cost += kNotNearest * (cost - least);
+  }
+}
+
 void PathFinder::gatherNode(Id row, Block& block) const {
   const Vec3& p = mesh_.points[wall_.nodes[row]];
   const double scale = wall_.scale[row];
@@ -157,6 +170,7 @@ void PathFinder::gatherNode(Id row, Block& block) const {
   box.add(p + reach);
   const std::vector<Id> ids = graph_.segmentsNear(box);
   const auto& segments = graph_.segments();
+  const std::size_t firstOfNode = block.curves.size();
   for (std::size_t i = 0; i < ids.size();) {
     const Id curve = segments[ids[i]].curve;
     double best = std::numeric_limits<double>::infinity(), arc = 0;
@@ -176,6 +190,7 @@ void PathFinder::gatherNode(Id row, Block& block) const {
     if (first) addCorner(graph_.curves()[curve].startCorner, row, block);
     if (last) addCorner(graph_.curves()[curve].endCorner, row, block);
   }
+  preferNearest(block, firstOfNode);
 }
 
 void PathFinder::gather() {

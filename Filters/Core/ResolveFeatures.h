@@ -11,7 +11,7 @@ namespace pm {
 
 struct ResolveFeaturesOptions {
   FeatureOptions features;
-  int rounds = 4;
+  int rounds = 5;
   QualityLimits limits;
 };
 
