@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "CellCuts.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "MeshQuality.h"
+#include "PointOrder.h"
+
+namespace pm {
+namespace {
+
+constexpr double cubed(double x) { return x * x * x; }
+constexpr double kGood = cubed(0.35);  // a mean ratio that needs no improvement
+constexpr double kShare = cubed(0.5);  // of the worst central tetrahedron's, which is always to be had
+constexpr double kPyramidShare =
+    cubed(0.1);                  // of that, for a quad whose cutting would cost a cell that stays
+constexpr double kFlat = 0.966;  // cosine of 15 degrees of warpage
+constexpr double kNever = -std::numeric_limits<double>::infinity();
+constexpr double kAlways = std::numeric_limits<double>::infinity();
+
+/// Calls body(i) for i in [0, count), in parallel; the monitor is asked between chunks.
+template <class Body>
+void forChunks(Id count, Monitor& monitor, double fraction, const char* pass, const Body& body) {
+  constexpr Id kChunk = 1 << 17;
+  for (Id first = 0; first < count; first += std::min(kChunk, count - first)) {
+    monitor.check(fraction, pass);
+    tbb::parallel_for(first, first + std::min(kChunk, count - first), body);
+  }
+}
+
+/// Whether the cell is a tetrahedron, pyramid, wedge or hexahedron: so many triangles and quads, and so many
+/// faces at each point.
+bool isStandard(const PolyMesh& mesh, Span<Id> faces, Span<Id> points) {
+  std::size_t triangles = 0, quads = 0;
+  for (Id f : faces) {
+    triangles += mesh.faces[f].size() == 3;
+    quads += mesh.faces[f].size() == 4;
+  }
+  if (triangles + quads != faces.size()) return false;
+  if (quads == 0) return triangles == 4 && points.size() == 4;
+  if (quads == 1) return triangles == 4 && points.size() == 5;
+  const bool counts = (quads == 3 && triangles == 2 && points.size() == 6) ||
+                      (quads == 6 && triangles == 0 && points.size() == 8);
+  return counts && std::all_of(points.begin(), points.end(), [&](Id p) {
+           return std::count_if(faces.begin(), faces.end(), [&](Id f) {
+                    const Span<Id> row = mesh.faces[f];
+                    return std::find(row.begin(), row.end(), p) != row.end();
+                  }) == 3;
+         });
+}
+
+}  // namespace
+
+class CutChooser::Impl {
+ public:
+  Impl(const PolyMesh& mesh, bool hybrid, Monitor& monitor)
+      : mesh_(mesh),
+        hybrid_(hybrid),
+        monitor_(monitor),
+        facesOf_(cellFaces(mesh)),
+        pointsOf_(cellPoints(mesh)),
+        facesAt_(pointFaces(mesh)),
+        order_(mesh) {}
+
+  const CellCuts& choose() {
+    placeCentres();
+    startFaces();
+    improve(std::vector<char>(mesh_.cellCount, 1));
+    checkVolumes();
+    return cuts_;
+  }
+
+  const CellCuts& mend(const std::vector<Id>& cells) {
+    std::vector<char> again(mesh_.cellCount, 0);
+    for (Id c : cells) {
+      if (cuts_.apex[c] == CellCuts::kWhole) continue;
+      again[c] = 1;
+      if (cuts_.apex[c] != CellCuts::kCentre) {
+        centred_[c] = 1;
+        continue;
+      }
+      for (Id f : facesOf_[c]) {
+        if (cuts_.fan[f] == CellCuts::kWhole || cuts_.fan[f] == CellCuts::kCentre) continue;
+        cuts_.fan[f] = CellCuts::kCentre;
+        settled_[f] = 1;
+        for (int side = 0; side < sidesOf(f); ++side) again[cellAt(f, side)] = 1;
+      }
+    }
+    improve(std::move(again));
+    checkVolumes();
+    return cuts_;
+  }
+
+ private:
+  void placeCentres() {
+    cuts_.faceCentre.resize(mesh_.faceCount());
+    forChunks(mesh_.faceCount(), monitor_, 0.1, "face centres",
+              [&](Id f) { cuts_.faceCentre[f] = measureFace(mesh_.points, mesh_.faces[f], true).centre; });
+    cuts_.cellCentre.resize(mesh_.cellCount);
+    needed_.resize(mesh_.cellCount);
+    forChunks(mesh_.cellCount, monitor_, 0.2, "cell centres", [&](Id c) {
+      const CellMeasures cell = measureCell(mesh_, c, facesOf_[c], pointsOf_[c],
+                                            [&](Id f) -> const Vec3& { return cuts_.faceCentre[f]; });
+      cuts_.cellCentre[c] = cell.centre;
+      needed_[c] = std::min(kGood, kShare * centralShape(c, cell.centre));
+    });
+  }
+
+  /// Whether two points of a face are together in no other face: only then is a line between them an edge of
+  /// this face's triangles alone.
+  bool onlyHere(Id p, Id q) const {
+    const Span<Id> a = facesAt_[p], b = facesAt_[q];
+    int shared = 0;
+    for (const Id *i = a.begin(), *j = b.begin(); i != a.end() && j != b.end() && shared < 2;) {
+      shared += *i == *j;
+      *i < *j ? ++i : *j < *i ? ++j : (++i, ++j);
+    }
+    return shared == 1;
+  }
+
+  /// Whether the fan from a corner has no edge that another face might have too.
+  bool isFree(Id f, Id corner) const {
+    const Span<Id> row = mesh_.faces[f];
+    const std::size_t n = row.size();
+    for (std::size_t i = 2; i + 1 < n; ++i)
+      if (!onlyHere(row[corner], row[(corner + i) % n])) return false;
+    return true;
+  }
+
+  /// Whether the wall is folded across the face, so that a fan might fold it the other way.
+  bool isBent(Id f) const {
+    return f >= mesh_.internalFaces() && measureFace(mesh_.points, mesh_.faces[f]).cosWarpage < kFlat;
+  }
+
+  /// The fan from the first point in the one order that is free.
+  Id firstFan(Id f) const {
+    const Span<Id> row = mesh_.faces[f];
+    Id first = CellCuts::kCentre;
+    if (isBent(f)) return first;
+    for (Id corner = 0; corner < Id(row.size()); ++corner)
+      if ((first == CellCuts::kCentre || order_.before(row[corner], row[first])) && isFree(f, corner))
+        first = corner;
+    return first;
+  }
+
+  /// Every face's fan begins at its first point in the one order, so that cells can have fans too.
+  void startFaces() {
+    cuts_.fan.resize(mesh_.faceCount());
+    settled_.resize(mesh_.faceCount());
+    forChunks(mesh_.faceCount(), monitor_, 0.3, "first cuts", [&](Id f) {
+      const Span<Id> row = mesh_.faces[f];
+      const bool whole = row.size() == 3 || (hybrid_ && row.size() == 4);
+      cuts_.fan[f] = whole ? CellCuts::kWhole : firstFan(f);
+      settled_[f] = row.size() == 3;
+    });
+    cuts_.apex.resize(mesh_.cellCount);
+    centred_.assign(mesh_.cellCount, 0);
+    standard_.resize(mesh_.cellCount);
+    forChunks(mesh_.cellCount, monitor_, 0.3, "first cuts",
+              [&](Id c) { standard_[c] = isStandard(mesh_, facesOf_[c], pointsOf_[c]); });
+  }
+
+  /// Cells choose; those that none of their apexes suits have the faces cut otherwise, once for each face.
+  void improve(std::vector<char> again) {
+    std::vector<char> bad(2 * std::size_t(mesh_.faceCount()));
+    for (double round = 0;; ++round) {
+      const double fraction = 1 - 0.6 / (1 + 0.3 * round);
+      std::fill(bad.begin(), bad.end(), 0);
+      forChunks(mesh_.cellCount, monitor_, fraction, "cutting cells", [&](Id c) {
+        if (again[c]) chooseApex(c, bad);
+      });
+      std::fill(again.begin(), again.end(), 0);
+      std::vector<Id> changed;
+      for (Id f = 0; f < mesh_.faceCount(); ++f)
+        if ((bad[2 * f] || bad[2 * f + 1]) && !settled_[f]) changed.push_back(f);
+      if (changed.empty()) return;
+      forChunks(static_cast<Id>(changed.size()), monitor_, fraction, "cutting faces",
+                [&](Id i) { settle(changed[i]); });
+      for (Id f : changed)
+        for (int side = 0; side < sidesOf(f); ++side) again[cellAt(f, side)] = 1;
+    }
+  }
+
+  void chooseApex(Id c, std::vector<char>& bad) {
+    if (staysWhole(c)) {
+      cuts_.apex[c] = CellCuts::kWhole;
+      return;
+    }
+    if (!centred_[c] && chooseOwnPoint(c)) return;
+    cuts_.apex[c] = CellCuts::kCentre;
+    for (Id f : facesOf_[c]) {
+      const double shape = faceShape(f, cuts_.fan[f], c, cuts_.cellCentre[c], kNone);
+      const bool quad = cuts_.fan[f] == CellCuts::kWhole && mesh_.faces[f].size() == 4;
+      if (!(shape > 0) || shape < (quad ? kPyramidShare : 1) * needed_[c])
+        bad[2 * f + (mesh_.owner[f] != c)] = 1;
+    }
+  }
+
+  /// Whether one of the cell's points is good enough: the first in the one order if it is, else the best.
+  bool chooseOwnPoint(Id c) {
+    const Id first = *order_.firstOf(pointsOf_[c]);
+    cuts_.apex[c] = first;
+    double best = coneShape(c, mesh_.points[first], first, needed_[c]);
+    if (best >= needed_[c]) return true;
+    for (Id p : pointsOf_[c]) {
+      const double shape = coneShape(c, mesh_.points[p], p, best);
+      if (!(shape > best)) continue;
+      best = shape;
+      cuts_.apex[c] = p;
+    }
+    return best >= needed_[c];
+  }
+
+  bool staysWhole(Id c) const {
+    return standard_[c] && std::all_of(facesOf_[c].begin(), facesOf_[c].end(),
+                                       [&](Id f) { return cuts_.fan[f] == CellCuts::kWhole; });
+  }
+
+  /// The fan that suits the centres of both cells best, or the face's centre when none suits.
+  void settle(Id f) {
+    settled_[f] = 1;
+    const auto share = [&](Id fan) {
+      double least = kAlways;
+      for (int side = 0; side < sidesOf(f); ++side) {
+        const Id c = cellAt(f, side);
+        const double shape = faceShape(f, fan, c, cuts_.cellCentre[c], kNone);
+        least = std::min(least, shape > 0 ? shape / std::max(needed_[c], 1e-300) : shape);
+      }
+      return least;
+    };
+    Id best = CellCuts::kCentre;
+    cuts_.fan[f] = best;
+    if (isBent(f)) return;
+    double most = std::min(1.0, share(best));
+    for (Id corner = 0; corner < Id(mesh_.faces[f].size()); ++corner) {
+      const double now = share(corner);
+      if (now < most || !isFree(f, corner)) continue;
+      most = now;
+      best = corner;
+    }
+    cuts_.fan[f] = best;
+  }
+
+  void checkVolumes() {
+    monitor_.check(0.95, "checking volumes");
+    std::vector<char> fails(mesh_.cellCount, 0);
+    tbb::parallel_for(Id(0), mesh_.cellCount, [&](Id c) {
+      const Id apex = cuts_.apex[c];
+      if (apex == CellCuts::kWhole) return;
+      const bool centre = apex == CellCuts::kCentre;
+      fails[c] = !(coneShape(c, centre ? cuts_.cellCentre[c] : mesh_.points[apex], apex, 0) > 0);
+    });
+    const auto count = std::count(fails.begin(), fails.end(), 1);
+    if (count > 0)
+      throw InputError(fmt::format(
+          "{} of the mesh's cells cannot be cut into cells of positive volume, the first is cell {}; Mesh "
+          "Validity shows what is wrong with them.",
+          count, std::find(fails.begin(), fails.end(), 1) - fails.begin()));
+  }
+
+  int sidesOf(Id f) const { return f < mesh_.internalFaces() ? 2 : 1; }
+  Id cellAt(Id f, int side) const { return side == 0 ? mesh_.owner[f] : mesh_.neighbour[f]; }
+  const Vec3& at(Id point) const {
+    const Id count = static_cast<Id>(mesh_.points.size());
+    return point < count ? mesh_.points[point] : cuts_.faceCentre[point - count];
+  }
+
+  /// Worst shape of the cells that the pieces of a face make with an apex; a pyramid's is that of its
+  /// corners.
+  double faceShape(Id f, Id fan, Id c, const Vec3& apex, Id apexPoint) const {
+    double worst = kAlways;
+    const Id centre = static_cast<Id>(mesh_.points.size()) + f;
+    const Span<Id> row = mesh_.faces[f];
+    if (apexPoint >= 0 && std::find(row.begin(), row.end(), apexPoint) != row.end()) {
+      const bool fits = row.size() == 3 || (fan >= 0 && row[fan] == apexPoint);
+      return fits ? kAlways : kNever;  // its pieces are faces of the cones on others
+    }
+    forEachPiece(row, fan, centre, mesh_.owner[f] != c, [&](const Piece& piece) {
+      const auto corner = [&](int i) -> const Vec3& { return at(piece.corner[i % piece.size]); };
+      for (int i = 0; i < (piece.size == 4 ? 4 : 1); ++i)
+        worst = std::min(worst, tetShape(corner(i), corner(i + 2), corner(i + 1), apex));
+    });
+    return worst;
+  }
+
+  /// Worst shape of a cell's new cells; anything below `enough` when there is one as bad.
+  double coneShape(Id c, const Vec3& apex, Id apexPoint, double enough) const {
+    double worst = kAlways;
+    for (Id f : facesOf_[c]) {
+      worst = std::min(worst, faceShape(f, cuts_.fan[f], c, apex, apexPoint));
+      if (worst < enough) break;
+    }
+    return worst;
+  }
+
+  double centralShape(Id c, const Vec3& apex) const {
+    double worst = kAlways;
+    for (Id f : facesOf_[c]) {
+      const bool triangle = mesh_.faces[f].size() == 3;
+      worst = std::min(worst, faceShape(f, triangle ? CellCuts::kWhole : CellCuts::kCentre, c, apex, kNone));
+    }
+    return worst;
+  }
+
+  const PolyMesh& mesh_;
+  const bool hybrid_;
+  Monitor& monitor_;
+  const Csr<Id> facesOf_, pointsOf_, facesAt_;
+  const PointOrder order_;
+  CellCuts cuts_;
+  std::vector<double> needed_;  // #C shape that is good enough
+  std::vector<char> settled_;   // #F the face is cut for good
+  std::vector<char> standard_;  // #C
+  std::vector<char> centred_;   // #C the apex may not be a point of the cell's own
+};
+
+CutChooser::CutChooser(const PolyMesh& mesh, bool hybrid, Monitor& monitor)
+    : impl_(std::make_unique<Impl>(mesh, hybrid, monitor)) {}
+CutChooser::~CutChooser() = default;
+const CellCuts& CutChooser::choose() { return impl_->choose(); }
+const CellCuts& CutChooser::mend(const std::vector<Id>& cells) { return impl_->mend(cells); }
+
+}  // namespace pm
