@@ -2,11 +2,12 @@
 #include "CellCuts.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "Chunks.h"
 #include "MeshQuality.h"
 #include "PointOrder.h"
 
@@ -21,16 +22,6 @@ constexpr double kPyramidShare =
 constexpr double kFlat = 0.966;  // cosine of 15 degrees of warpage
 constexpr double kNever = -std::numeric_limits<double>::infinity();
 constexpr double kAlways = std::numeric_limits<double>::infinity();
-
-/// Calls body(i) for i in [0, count), in parallel; the monitor is asked between chunks.
-template <class Body>
-void forChunks(Id count, Monitor& monitor, double fraction, const char* pass, const Body& body) {
-  constexpr Id kChunk = 1 << 17;
-  for (Id first = 0; first < count; first += std::min(kChunk, count - first)) {
-    monitor.check(fraction, pass);
-    tbb::parallel_for(first, first + std::min(kChunk, count - first), body);
-  }
-}
 
 /// Whether the cell is a tetrahedron, pyramid, wedge or hexahedron: so many triangles and quads, and so many
 /// faces at each point.
@@ -53,32 +44,51 @@ bool isStandard(const PolyMesh& mesh, Span<Id> faces, Span<Id> points) {
          });
 }
 
+/// Goes from a point towards each of the targets by ever smaller parts of the way, where shape(place, enough)
+/// is better there; it may answer anything below `enough` when it is not.
+template <class PointOf, class Shape>
+Vec3 climb(Vec3 at, Span<Id> targets, const PointOf& pointOf, const Shape& shape) {
+  double best = shape(at, kNever);
+  for (double part = 0.3; part > 0.03 && best < kGood; part /= 2) {
+    for (Id target : targets) {
+      const Vec3 trial = at + part * (pointOf(target) - at);
+      const double now = shape(trial, best);
+      if (!(now > best)) continue;
+      best = now;
+      at = trial;
+    }
+  }
+  return at;
+}
+
 }  // namespace
 
 class CutChooser::Impl {
  public:
-  Impl(const PolyMesh& mesh, bool hybrid, Monitor& monitor)
+  Impl(const PolyMesh& mesh, bool hybrid)
       : mesh_(mesh),
         hybrid_(hybrid),
-        monitor_(monitor),
         facesOf_(cellFaces(mesh)),
         pointsOf_(cellPoints(mesh)),
         facesAt_(pointFaces(mesh)),
         order_(mesh) {}
 
-  const CellCuts& choose() {
-    placeCentres();
-    startFaces();
-    improve(std::vector<char>(mesh_.cellCount, 1));
-    checkVolumes();
+  const CellCuts& choose(Monitor& monitor) {
+    placeCentres(monitor);
+    startFaces(monitor);
+    std::vector<Id> all(mesh_.cellCount);
+    std::iota(all.begin(), all.end(), Id(0));
+    improve(std::move(all), monitor);
+    moveNewPoints(monitor);
+    checkVolumes(monitor);
     return cuts_;
   }
 
-  const CellCuts& mend(const std::vector<Id>& cells) {
-    std::vector<char> again(mesh_.cellCount, 0);
+  const CellCuts& mend(const std::vector<Id>& cells, Monitor& monitor) {
+    std::vector<Id> again;
     for (Id c : cells) {
       if (cuts_.apex[c] == CellCuts::kWhole) continue;
-      again[c] = 1;
+      again.push_back(c);
       if (cuts_.apex[c] != CellCuts::kCentre) {
         centred_[c] = 1;
         continue;
@@ -87,22 +97,24 @@ class CutChooser::Impl {
         if (cuts_.fan[f] == CellCuts::kWhole || cuts_.fan[f] == CellCuts::kCentre) continue;
         cuts_.fan[f] = CellCuts::kCentre;
         settled_[f] = 1;
-        for (int side = 0; side < sidesOf(f); ++side) again[cellAt(f, side)] = 1;
+        for (int side = 0; side < sidesOf(f); ++side) again.push_back(cellAt(f, side));
       }
     }
-    improve(std::move(again));
-    checkVolumes();
+    sortOut(again);
+    improve(std::move(again), monitor);
+    moveNewPoints(monitor);
+    checkVolumes(monitor);
     return cuts_;
   }
 
  private:
-  void placeCentres() {
+  void placeCentres(Monitor& monitor) {
     cuts_.faceCentre.resize(mesh_.faceCount());
-    forChunks(mesh_.faceCount(), monitor_, 0.1, "face centres",
+    forChunks(mesh_.faceCount(), monitor, 0.1, "face centres",
               [&](Id f) { cuts_.faceCentre[f] = measureFace(mesh_.points, mesh_.faces[f], true).centre; });
     cuts_.cellCentre.resize(mesh_.cellCount);
     needed_.resize(mesh_.cellCount);
-    forChunks(mesh_.cellCount, monitor_, 0.2, "cell centres", [&](Id c) {
+    forChunks(mesh_.cellCount, monitor, 0.2, "cell centres", [&](Id c) {
       const CellMeasures cell = measureCell(mesh_, c, facesOf_[c], pointsOf_[c],
                                             [&](Id f) -> const Vec3& { return cuts_.faceCentre[f]; });
       cuts_.cellCentre[c] = cell.centre;
@@ -148,10 +160,11 @@ class CutChooser::Impl {
   }
 
   /// Every face's fan begins at its first point in the one order, so that cells can have fans too.
-  void startFaces() {
+  void startFaces(Monitor& monitor) {
     cuts_.fan.resize(mesh_.faceCount());
     settled_.resize(mesh_.faceCount());
-    forChunks(mesh_.faceCount(), monitor_, 0.3, "first cuts", [&](Id f) {
+    bad_.assign(2 * static_cast<std::size_t>(mesh_.faceCount()), 0);
+    forChunks(mesh_.faceCount(), monitor, 0.3, "first cuts", [&](Id f) {
       const Span<Id> row = mesh_.faces[f];
       const bool whole = row.size() == 3 || (hybrid_ && row.size() == 4);
       cuts_.fan[f] = whole ? CellCuts::kWhole : firstFan(f);
@@ -160,32 +173,36 @@ class CutChooser::Impl {
     cuts_.apex.resize(mesh_.cellCount);
     centred_.assign(mesh_.cellCount, 0);
     standard_.resize(mesh_.cellCount);
-    forChunks(mesh_.cellCount, monitor_, 0.3, "first cuts",
+    forChunks(mesh_.cellCount, monitor, 0.3, "first cuts",
               [&](Id c) { standard_[c] = isStandard(mesh_, facesOf_[c], pointsOf_[c]); });
   }
 
+  static void sortOut(std::vector<Id>& ids) {
+    std::sort(ids.begin(), ids.end());
+    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  }
+
   /// Cells choose; those that none of their apexes suits have the faces cut otherwise, once for each face.
-  void improve(std::vector<char> again) {
-    std::vector<char> bad(2 * std::size_t(mesh_.faceCount()));
-    for (double round = 0;; ++round) {
-      const double fraction = 1 - 0.6 / (1 + 0.3 * round);
-      std::fill(bad.begin(), bad.end(), 0);
-      forChunks(mesh_.cellCount, monitor_, fraction, "cutting cells", [&](Id c) {
-        if (again[c]) chooseApex(c, bad);
-      });
-      std::fill(again.begin(), again.end(), 0);
-      std::vector<Id> changed;
-      for (Id f = 0; f < mesh_.faceCount(); ++f)
-        if ((bad[2 * f] || bad[2 * f + 1]) && !settled_[f]) changed.push_back(f);
-      if (changed.empty()) return;
-      forChunks(static_cast<Id>(changed.size()), monitor_, fraction, "cutting faces",
-                [&](Id i) { settle(changed[i]); });
-      for (Id f : changed)
-        for (int side = 0; side < sidesOf(f); ++side) again[cellAt(f, side)] = 1;
+  void improve(std::vector<Id> cells, Monitor& monitor) {
+    for (double round = 0; !cells.empty(); ++round) {
+      const double fraction = 0.9 - 0.5 / (1 + 0.3 * round);
+      forChunks(static_cast<Id>(cells.size()), monitor, fraction, "cutting cells",
+                [&](Id i) { chooseApex(cells[i]); });
+      std::vector<Id> faces;
+      for (Id c : cells)
+        for (Id f : facesOf_[c])
+          if (bad_[2 * f] || bad_[2 * f + 1]) faces.push_back(f);
+      sortOut(faces);
+      forChunks(static_cast<Id>(faces.size()), monitor, fraction, "cutting faces",
+                [&](Id i) { settle(faces[i]); });
+      cells.clear();
+      for (Id f : faces)
+        for (int side = 0; side < sidesOf(f); ++side) cells.push_back(cellAt(f, side));
+      sortOut(cells);
     }
   }
 
-  void chooseApex(Id c, std::vector<char>& bad) {
+  void chooseApex(Id c) {
     if (staysWhole(c)) {
       cuts_.apex[c] = CellCuts::kWhole;
       return;
@@ -193,10 +210,11 @@ class CutChooser::Impl {
     if (!centred_[c] && chooseOwnPoint(c)) return;
     cuts_.apex[c] = CellCuts::kCentre;
     for (Id f : facesOf_[c]) {
+      if (settled_[f]) continue;
       const double shape = faceShape(f, cuts_.fan[f], c, cuts_.cellCentre[c], kNone);
       const bool quad = cuts_.fan[f] == CellCuts::kWhole && mesh_.faces[f].size() == 4;
       if (!(shape > 0) || shape < (quad ? kPyramidShare : 1) * needed_[c])
-        bad[2 * f + (mesh_.owner[f] != c)] = 1;
+        bad_[2 * f + (mesh_.owner[f] != c)] = 1;
     }
   }
 
@@ -223,6 +241,7 @@ class CutChooser::Impl {
   /// The fan that suits the centres of both cells best, or the face's centre when none suits.
   void settle(Id f) {
     settled_[f] = 1;
+    bad_[2 * f] = bad_[2 * f + 1] = 0;
     const auto share = [&](Id fan) {
       double least = kAlways;
       for (int side = 0; side < sidesOf(f); ++side) {
@@ -245,8 +264,35 @@ class CutChooser::Impl {
     cuts_.fan[f] = best;
   }
 
-  void checkVolumes() {
-    monitor_.check(0.95, "checking volumes");
+  /// New points go where the worst of the cells at them is best; cells, then faces, do not depend on each
+  /// other. Those of boundary faces stay, since they are the wall.
+  void moveNewPoints(Monitor& monitor) {
+    forChunks(mesh_.cellCount, monitor, 0.9, "moving new points", [&](Id c) {
+      if (cuts_.apex[c] != CellCuts::kCentre) return;
+      const auto centreOf = [&](Id f) -> const Vec3& { return cuts_.faceCentre[f]; };
+      cuts_.cellCentre[c] =
+          climb(cuts_.cellCentre[c], facesOf_[c], centreOf,
+                [&](const Vec3& at, double enough) { return coneShape(c, at, kNone, enough); });
+    });
+    forChunks(mesh_.internalFaces(), monitor, 0.9, "moving new points", [&](Id f) {
+      if (cuts_.fan[f] != CellCuts::kCentre) return;
+      Vec3& centre = cuts_.faceCentre[f];
+      const auto corner = [&](Id p) -> const Vec3& { return mesh_.points[p]; };
+      centre = climb(centre, mesh_.faces[f], corner, [&](const Vec3& at, double) {
+        centre = at;
+        return std::min(shapeBelow(f, mesh_.owner[f]), shapeBelow(f, mesh_.neighbour[f]));
+      });
+    });
+  }
+
+  /// Worst shape of a cell's new cells on one of its faces.
+  double shapeBelow(Id f, Id c) const {
+    const Id apex = cuts_.apex[c];
+    return faceShape(f, cuts_.fan[f], c, apex < 0 ? cuts_.cellCentre[c] : mesh_.points[apex], apex);
+  }
+
+  void checkVolumes(Monitor& monitor) {
+    monitor.check(0.95, "checking volumes");
     std::vector<char> fails(mesh_.cellCount, 0);
     tbb::parallel_for(Id(0), mesh_.cellCount, [&](Id c) {
       const Id apex = cuts_.apex[c];
@@ -308,20 +354,21 @@ class CutChooser::Impl {
 
   const PolyMesh& mesh_;
   const bool hybrid_;
-  Monitor& monitor_;
   const Csr<Id> facesOf_, pointsOf_, facesAt_;
   const PointOrder order_;
   CellCuts cuts_;
   std::vector<double> needed_;  // #C shape that is good enough
+  std::vector<char> bad_;       // #F by 2: a cell's centre wants the face cut otherwise
   std::vector<char> settled_;   // #F the face is cut for good
   std::vector<char> standard_;  // #C
   std::vector<char> centred_;   // #C the apex may not be a point of the cell's own
 };
 
-CutChooser::CutChooser(const PolyMesh& mesh, bool hybrid, Monitor& monitor)
-    : impl_(std::make_unique<Impl>(mesh, hybrid, monitor)) {}
+CutChooser::CutChooser(const PolyMesh& mesh, bool hybrid) : impl_(std::make_unique<Impl>(mesh, hybrid)) {}
 CutChooser::~CutChooser() = default;
-const CellCuts& CutChooser::choose() { return impl_->choose(); }
-const CellCuts& CutChooser::mend(const std::vector<Id>& cells) { return impl_->mend(cells); }
+const CellCuts& CutChooser::choose(Monitor& monitor) { return impl_->choose(monitor); }
+const CellCuts& CutChooser::mend(const std::vector<Id>& cells, Monitor& monitor) {
+  return impl_->mend(cells, monitor);
+}
 
 }  // namespace pm

@@ -83,14 +83,14 @@ inline double tetShape(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& 
 class CutChooser {
  public:
   /// hybrid: standard cells stay, and quads between cells; else only tetrahedra come out.
-  CutChooser(const PolyMesh& mesh, bool hybrid, Monitor& monitor);
+  CutChooser(const PolyMesh& mesh, bool hybrid);
   ~CutChooser();
 
   /// Throws InputError when a cell cannot be cut into cells of positive volume.
-  const CellCuts& choose();
+  const CellCuts& choose(Monitor& monitor);
   /// The same, with each of these cells a step nearer to its central tetrahedra: first coned to its centre,
   /// then with its faces cut about their centres too. Cells that stay, stay.
-  const CellCuts& mend(const std::vector<Id>& cells);
+  const CellCuts& mend(const std::vector<Id>& cells, Monitor& monitor);
 
  private:
   class Impl;

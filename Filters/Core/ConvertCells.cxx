@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ConvertCells.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
+#include <cmath>
 
+#include "Chunks.h"
 #include "CutAssembly.h"
 #include "FoamQuality.h"
 
@@ -40,20 +40,48 @@ double enclosedVolume(const PolyMesh& mesh) {
   return volume;
 }
 
+/// OpenFOAM's centre of each cell; a tetrahedron's is the mean of its points.
+std::vector<Vec3> foamCentres(const PolyMesh& mesh, Monitor& monitor) {
+  const Csr<Id> facesOf = cellFaces(mesh);
+  const auto faceCentre = [&](Id f) { return measureFace(mesh.points, mesh.faces[f], true).centre; };
+  std::vector<Vec3> centres(mesh.cellCount);
+  forChunks(mesh.cellCount, monitor, 0.2, "measuring cells", [&](Id c) {
+    thread_local std::vector<Id> points;
+    points.clear();
+    for (Id f : facesOf[c]) points.insert(points.end(), mesh.faces[f].begin(), mesh.faces[f].end());
+    std::sort(points.begin(), points.end());
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    const Span<Id> own{points.data(), points.data() + points.size()};
+    Vec3 sum = Vec3::Zero();
+    for (Id p : own) sum += mesh.points[p] - mesh.points[own[0]];
+    centres[c] = own.size() == 4 ? Vec3(mesh.points[own[0]] + sum / 4)
+                                 : measureCell(mesh, c, facesOf[c], own, faceCentre).foamCentre;
+  });
+  return centres;
+}
+
 /// OpenFOAM's skewness and non-orthogonality of all faces.
 struct FaceTable {
   std::vector<float> skewness;          // #F
   std::vector<float> nonOrthogonality;  // #internal faces, degrees
 };
 
-FaceTable measureFaces(const PolyMesh& mesh) {
-  const MeshMeasures m = measure(mesh);
+FaceTable measureFaces(const PolyMesh& mesh, Monitor& monitor) {
+  const std::vector<Vec3> centres = foamCentres(mesh, monitor);
   FaceTable table;
-  table.skewness = m.faceSkew;
+  table.skewness.resize(mesh.faceCount());
   table.nonOrthogonality.resize(mesh.internalFaces());
-  tbb::parallel_for(Id(0), mesh.internalFaces(), [&](Id f) {
-    const Vec3 between = m.cells[mesh.neighbour[f]].foamCentre - m.cells[mesh.owner[f]].foamCentre;
-    table.nonOrthogonality[f] = static_cast<float>(faceAngle(m.faces[f].normal, between));
+  forChunks(mesh.faceCount(), monitor, 0.6, "measuring faces", [&](Id f) {
+    const Span<Id> row = mesh.faces[f];
+    const FaceMeasures face = measureFace(mesh.points, row, true);
+    const Vec3& own = centres[mesh.owner[f]];
+    if (f >= mesh.internalFaces()) {
+      table.skewness[f] = static_cast<float>(boundarySkewness(mesh.points, row, face, own));
+      return;
+    }
+    const Vec3& next = centres[mesh.neighbour[f]];
+    table.skewness[f] = static_cast<float>(internalSkewness(mesh.points, row, face, own, next));
+    table.nonOrthogonality[f] = static_cast<float>(faceAngle(face.normal, next - own));
   });
   return table;
 }
@@ -102,22 +130,23 @@ void fillReport(const PolyMesh& mesh, const CellCuts& cuts, const PolyMesh& out,
 PolyMesh convertCells(const PolyMesh& mesh, const ConvertCellsOptions& options, Monitor& monitor,
                       ConvertCellsReport* report) {
   constexpr int kMostMends = 4;  // a cell has two steps to take, and may be reached by its neighbours'
-  PartMonitor choosing(monitor, 0, 0.4), assembling(monitor, 0.4, 0.8), mending(monitor, 0.8, 1);
-  CutChooser chooser(mesh, options.shapes == CellShapes::Hybrid, choosing);
-  const CellCuts& cuts = chooser.choose();
-  std::vector<Id> firstCell;
-  PolyMesh out = assembleCuts(mesh, cuts, assembling, firstCell);
+  CutChooser chooser(mesh, options.shapes == CellShapes::Hybrid);
+  PolyMesh out;
+  const CellCuts* cuts = nullptr;
   FaceTable table;
-  for (int mends = 0;; ++mends) {
-    mending.check(double(mends) / (kMostMends + 1), "measuring faces");
-    table = measureFaces(out);
-    const std::vector<Id> skew = cellsAtSkewFaces(out, table, firstCell);
-    if (skew.empty() || mends == kMostMends) break;
-    chooser.mend(skew);
-    out = assembleCuts(mesh, cuts, assembling, firstCell);
+  std::vector<Id> firstCell, skew;
+  for (int mends = 0; mends == 0 || (!skew.empty() && mends <= kMostMends); ++mends) {
+    const double from = 1 - std::pow(0.3, mends), to = 1 - std::pow(0.3, mends + 1);
+    PartMonitor choosing(monitor, from, 0.6 * from + 0.4 * to);
+    PartMonitor assembling(monitor, 0.6 * from + 0.4 * to, 0.2 * from + 0.8 * to);
+    PartMonitor measuring(monitor, 0.2 * from + 0.8 * to, to);
+    cuts = mends == 0 ? &chooser.choose(choosing) : &chooser.mend(skew, choosing);
+    out = assembleCuts(mesh, *cuts, assembling, firstCell);
+    table = measureFaces(out, measuring);
+    skew = cellsAtSkewFaces(out, table, firstCell);
   }
   out.stage = Stage::Refined;
-  if (report) fillReport(mesh, cuts, out, table, *report);
+  if (report) fillReport(mesh, *cuts, out, table, *report);
   return out;
 }
 
