@@ -12,7 +12,7 @@
 //   point  Base           int32  #P      lower end of a wall point's prism edge, -1 = none
 //   field  BoundaryPatch  int32  #B      patch of each boundary face
 //   field  PatchNames     string         name of each patch
-//   field  PatchTypes     string         "wall" or "patch", beside PatchNames
+//   field  PatchTypes     string         "wall", "patch" or "empty", beside PatchNames
 //   field  ZoneNames      string         name of each zone; absent when the mesh is one zone
 //   field  FinestSize     double 1       edge of the smallest octree cell
 //   field  ProjectionMesherStamp int64 6 format, stage, #P, #C, #B, pm::checksum

@@ -181,7 +181,7 @@ void removeStale(const fs::path& directory, bool hasZones) {
 }  // namespace
 
 std::string foamPatchType(const PolyMesh& mesh, Id patchId) {
-  if (!mesh.isWallPatch(patchId)) return "patch";
+  if (!mesh.isWallPatch(patchId)) return mesh.patchTypes[patchId];
   std::string name = mesh.patchNames[patchId];
   std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
   for (const char* word : {"inlet", "outlet", "inflow", "outflow", "opening", "farfield"})

@@ -20,7 +20,7 @@ namespace pm {
 /// AbortError on request.
 void writePolyMesh(const PolyMesh& mesh, const std::string& directory, bool binary, Monitor& monitor);
 
-/// OpenFOAM's type of patch `patchId`: "patch" for a domain side and for a patch of the geometry whose name
+/// OpenFOAM's type of patch `patchId`: "empty" for the planes of a planar mesh, "patch" for a domain side and for a patch of the geometry whose name
 /// tells that flow passes it (it contains inlet, outlet, inflow, outflow, opening or farfield, in any case),
 /// else "wall".
 std::string foamPatchType(const PolyMesh& mesh, Id patchId);

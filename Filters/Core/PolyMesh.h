@@ -26,7 +26,7 @@ struct PolyMesh {
   std::vector<Id> patch;      // #boundary faces: patch of face internalFaces()+i
   std::vector<std::string> patchNames;
   std::vector<std::string>
-      patchTypes;  // "wall" (from the geometry) or "patch" (a domain side), beside patchNames
+      patchTypes;  // "wall" (from the geometry), "patch" (a domain side) or "empty" (a planar mesh's planes)
   Id cellCount = 0;
 
   std::vector<std::uint8_t> level;     // #C octree level; a layer cell has its front cell's

@@ -71,7 +71,7 @@ class Layout(unittest.TestCase):
         limits = read("Docs/MeshValidity.md")
         filters = dict(server_manager.proxies(os.path.join(ROOT, "XML")))
         absent = []
-        for stem in STAGES + ("ProjectionMesh", "DetectFeatures", "CloseHoles", "FarField", "ConvertCells",
+        for stem in STAGES + ("ProjectionMesh", "DetectFeatures", "CloseHoles", "FarField", "ConvertCells", "PlanarMesh",
                               "MeshValidity", "MeshQualityReport", "MeshSlice"):
             page = read(f"Docs/{stem}.md")
             if filters[stem].get("base_proxyname") == "OctreeProperties":
