@@ -8,11 +8,14 @@
 #include <set>
 
 #include "MeshQuality.h"
+#include "StarPolygons.h"
 
 namespace pm {
 namespace {
 
 constexpr double kNear = 0.25;  // of an edge: a point nearer to the plane is moved onto it
+constexpr double kLeast = 0.1;  // of an edge: so far from its ends is a node, when those are not on the plane
+constexpr double kTiny = 1e-3;  // the same, of those that must be exact
 constexpr int kMostRounds = 20;
 
 /// A node of the section: on the edge from a point above the plane to one below it; or the point above
@@ -56,23 +59,29 @@ class Cutter {
       monitor.check(0.2 + 0.6 * round / kMostRounds, "section");
       Section section;
       findSides(section);
-      std::set<Id> faulty;
-      tracePolygons(section, faulty);
-      checkPolygons(section, faulty);
-      checkEdges(section, faulty);
+      std::set<Id> pinched, folded;
+      tracePolygons(section, pinched);
+      checkEdges(section, pinched);
+      checkPolygons(section, folded);
+      std::set<Id> faulty = pinched;
+      faulty.insert(folded.begin(), folded.end());
+      if (faulty.empty() && section.polygons.rows() == 0) refuseNoCut();
       if (faulty.empty()) return section;
-      if (!release(section, faulty) || round == kMostRounds)
-        throw InputError(
-            fmt::format("The section at {:g} has cells that are no simple polygons; choose another position.",
-                        position_));
+      if (release(section, faulty) && round < kMostRounds) continue;
+      if (!pinched.empty()) refuseSection();
+      cutPolygons(section);
+      return section;
     }
   }
 
   Vec3 place(const Node& node) const {
     const Vec3 &a = mesh_.points[node.above], &b = mesh_.points[node.below];
     Vec3 p = a;
-    if (node.above != node.below)
-      p += height(node.above) / (height(node.above) - height(node.below)) * (b - a);
+    if (node.above != node.below) {
+      const double part = height(node.above) / (height(node.above) - height(node.below));
+      const double least = exact_.count(node) ? kTiny : kLeast;
+      p += std::clamp(part, least, 1 - least) * (b - a);
+    }
     p[axis_] = position_;
     return p;
   }
@@ -83,6 +92,16 @@ class Cutter {
   }
 
  private:
+  [[noreturn]] void refuseNoCut() const {
+    throw InputError(fmt::format(
+        "The plane at {:g} does not cut the mesh; choose a position between its ends.", position_));
+  }
+
+  [[noreturn]] void refuseSection() const {
+    throw InputError(fmt::format(
+        "The section at {:g} has cells that are no simple polygons; choose another position.", position_));
+  }
+
   double height(Id p) const { return mesh_.points[p][axis_] - position_; }
   bool isAbove(Id p) const { return near_[p] || height(p) >= 0; }
 
@@ -108,9 +127,7 @@ class Cutter {
     std::vector<Id>& points = cutFaces_.points;
     std::sort(points.begin(), points.end());
     points.erase(std::unique(points.begin(), points.end()), points.end());
-    if (points.empty())
-      throw InputError(fmt::format(
-          "The plane at {:g} does not cut the mesh; choose a position between its ends.", position_));
+    if (points.empty()) refuseNoCut();
     std::vector<char> at(mesh_.points.size(), 0);
     for (Id p : points) at[p] = 1;
     for (Id f = 0; f < mesh_.faceCount(); ++f) {
@@ -129,7 +146,15 @@ class Cutter {
         if (b < kNear * (a + b)) near[q] = 1;
       });
     }
-    near_ = std::move(near);
+    // A point from below must have something below it, or its cells would be gone.
+    std::vector<char> based(mesh_.points.size(), 0);
+    const auto isBase = [&](Id p) { return height(p) < 0 && !near[p]; };
+    for (Id f : cutFaces_.faces)
+      forEachEdge(mesh_.faces[f], [&](Id p, Id q) {
+        if (isBase(q)) based[p] = 1;
+        if (isBase(p)) based[q] = 1;
+      });
+    for (Id p : cutFaces_.points) near_[p] = near[p] && (height(p) >= 0 || based[p]);
   }
 
   Node nodeOn(Id above, Id below) const { return near_[above] ? Node{above, above} : Node{above, below}; }
@@ -197,26 +222,85 @@ class Cutter {
     }
   }
 
-  /// Every polygon must hold its triangles about its centre.
-  void checkPolygons(const Section& section, std::set<Id>& faulty) const {
-    const int u = (axis_ + 1) % 3, v = (axis_ + 2) % 3;
+  /// The nodes as seen from above.
+  std::vector<Vec2> flatten(const Section& section) const {
+    std::vector<Vec2> flat;
+    for (const Node& node : section.nodes) {
+      const Vec3 p = place(node);
+      flat.emplace_back(p[(axis_ + 1) % 3], p[(axis_ + 2) % 3]);
+    }
+    return flat;
+  }
+
+  void checkPolygons(const Section& section, std::set<Id>& folded) const {
+    const std::vector<Vec2> flat = flatten(section);
     for (Id i = 0; i < section.polygons.rows(); ++i) {
       const Span<Id> row = section.polygons[i];
-      Vec3 middle = Vec3::Zero();
-      for (Id n : row) middle += place(section.nodes[n]) / static_cast<double>(row.size());
-      bool good = true;
-      forEachEdge(row, [&](Id p, Id q) {
-        const Vec3 a = place(section.nodes[p]) - middle, b = place(section.nodes[q]) - middle;
-        good &= a[u] * b[v] - a[v] * b[u] > 0;
-      });
-      if (!good) faulty.insert(row.begin(), row.end());
+      if (!isStar(flat, row)) folded.insert(row.begin(), row.end());
     }
+  }
+
+  /// Sections of cells that are hollow on one side become several cells; one that is inside out is first
+  /// joined with a neighbour.
+  void cutPolygons(Section& section) const {
+    const std::vector<Vec2> flat = flatten(section);
+    std::vector<std::vector<Id>> loops;
+    for (Id i = 0; i < section.polygons.rows(); ++i)
+      loops.emplace_back(section.polygons[i].begin(), section.polygons[i].end());
+    const auto partsOf = [&](const std::vector<Id>& loop) {
+      return cutIntoStars(flat, {loop.data(), loop.data() + loop.size()});
+    };
+    for (std::size_t i = 0; i < loops.size(); ++i)
+      if (!loops[i].empty() && partsOf(loops[i]).empty()) joinWithNeighbour(section, partsOf, Id(i), loops);
+    Csr<Id> polygons;
+    std::vector<Id> cellOf;
+    for (std::size_t i = 0; i < loops.size(); ++i) {
+      if (loops[i].empty()) continue;
+      for (const std::vector<Id>& part : partsOf(loops[i])) {
+        polygons.push(part);
+        cellOf.push_back(section.cellOf[i]);
+      }
+    }
+    section.polygons = std::move(polygons);
+    section.cellOf = std::move(cellOf);
+    std::set<Id> pinched;
+    checkEdges(section, pinched);
+    if (!pinched.empty()) refuseSection();
+  }
+
+  /// Adds a polygon to a neighbour in its zone with which it can be cut; its own loop is then empty.
+  template <class PartsOf>
+  void joinWithNeighbour(const Section& section, const PartsOf& partsOf, Id polygon,
+                         std::vector<std::vector<Id>>& loops) const {
+    const auto zoneOf = [&](Id i) { return mesh_.zone.empty() ? 0 : mesh_.zone[section.cellOf[i]]; };
+    for (std::size_t e = 0; e + 1 < section.edges.size(); ++e) {
+      const Edge &a = section.edges[e], &b = section.edges[e + 1];
+      if (a.low != b.low || a.high != b.high || (a.polygon != polygon && b.polygon != polygon)) continue;
+      const Id other = a.polygon == polygon ? b.polygon : a.polygon;
+      if (zoneOf(other) != zoneOf(polygon) || loops[other].empty()) continue;
+      const Edge& own = a.polygon == polygon ? a : b;
+      const Id from = own.upward ? own.low : own.high, to = own.upward ? own.high : own.low;
+      std::vector<Id> mine = loops[polygon], joined = loops[other];
+      std::rotate(mine.begin(), std::find(mine.begin(), mine.end(), to), mine.end());            // to .. from
+      std::rotate(joined.begin(), std::find(joined.begin(), joined.end(), from), joined.end());  // from .. to
+      if (mine.back() != from || joined.back() != to) continue;  // it has been joined already
+      joined.insert(joined.end(), mine.begin() + 1, mine.end() - 1);
+      std::vector<Id> different = joined;
+      std::sort(different.begin(), different.end());
+      if (std::adjacent_find(different.begin(), different.end()) != different.end()) continue;
+      if (partsOf(joined).empty()) continue;
+      loops[other] = std::move(joined);
+      loops[polygon].clear();
+      return;
+    }
+    refuseSection();
   }
 
   /// Every edge must be in two polygons that run it both ways, or in one; every node in no boundary edge or
   /// in two.
   static void checkEdges(Section& section, std::set<Id>& faulty) {
     std::vector<Edge>& edges = section.edges;
+    edges.clear();
     for (Id i = 0; i < section.polygons.rows(); ++i)
       forEachEdge(section.polygons[i], [&](Id p, Id q) {
         edges.push_back({std::min(p, q), std::max(p, q), i, p < q});
@@ -237,12 +321,13 @@ class Cutter {
       if (rims[n] != 0 && rims[n] != 2) faulty.insert(static_cast<Id>(n));
   }
 
-  /// Points whose nodes are at fault are moved off the plane again; false when there is none.
+  /// Points whose nodes are at fault are moved off the plane again, and nodes that still are go exactly where
+  /// the plane cuts their edge; false when there is nothing left to do.
   bool release(const Section& section, const std::set<Id>& faulty) {
     bool any = false;
     for (Id n : faulty) {
       const Node& node = section.nodes[n];
-      any |= near_[node.above] || near_[node.below];
+      any |= near_[node.above] != 0 || exact_.insert(node).second;
       near_[node.above] = near_[node.below] = 0;
     }
     return any;
@@ -255,6 +340,7 @@ class Cutter {
     std::vector<Id> points, faces;  // of the faces the plane cuts, and all faces at those points
   } cutFaces_;
   std::vector<char> near_;  // #P moved onto the plane
+  std::set<Node> exact_;
 };
 
 /// Patch of each rim edge that is left: of any side between its nodes, the first boundary face's.

@@ -9,7 +9,7 @@
 // then moved along the axis by half the thickness to either side.
 //
 // Passes: sides of points; nodes drawn together; sides and polygons of the section; undo what folds a polygon
-// or pinches the section, and again; the mesh one cell thick.
+// or pinches the section, and again; cut polygons that are hollow; the mesh one cell thick.
 #pragma once
 
 #include "Monitor.h"
@@ -34,8 +34,7 @@ struct PlanarMeshReport {
 /// the patches of the faces that were cut. A cell has the level, layer and zone of the cell it was cut from.
 /// Same bits for any number of threads; linear time, but for sorting the section.
 ///
-/// Throws InputError when the plane does not meet the mesh, or its section has a cell that is no simple
-/// polygon.
+/// Throws InputError when the plane does not meet the mesh, or its section touches itself.
 PolyMesh planarMesh(const PolyMesh& mesh, const PlanarMeshOptions& options, Monitor& monitor,
                     PlanarMeshReport* report = nullptr);
 
