@@ -10,6 +10,7 @@
 #include "Chunks.h"
 #include "MeshQuality.h"
 #include "PointOrder.h"
+#include "PolygonPrism.h"
 
 namespace pm {
 namespace {
@@ -79,18 +80,23 @@ class CutChooser::Impl {
     std::vector<Id> all(mesh_.cellCount);
     std::iota(all.begin(), all.end(), Id(0));
     improve(std::move(all), monitor);
+    faceCentre_ = cuts_.faceCentre;
+    cellCentre_ = cuts_.cellCentre;
     moveNewPoints(monitor);
     checkVolumes(monitor);
     return cuts_;
   }
 
   const CellCuts& mend(const std::vector<Id>& cells, Monitor& monitor) {
+    cuts_.faceCentre = faceCentre_;  // with which central tetrahedra have volume
+    cuts_.cellCentre = cellCentre_;
     std::vector<Id> again;
     for (Id c : cells) {
       if (cuts_.apex[c] == CellCuts::kWhole) continue;
       again.push_back(c);
+      prism_[c] = 0;
       if (cuts_.apex[c] != CellCuts::kCentre) {
-        centred_[c] = 1;
+        centred_[c] = cuts_.apex[c] >= 0;
         continue;
       }
       for (Id f : facesOf_[c]) {
@@ -175,6 +181,76 @@ class CutChooser::Impl {
     standard_.resize(mesh_.cellCount);
     forChunks(mesh_.cellCount, monitor, 0.3, "first cuts",
               [&](Id c) { standard_[c] = isStandard(mesh_, facesOf_[c], pointsOf_[c]); });
+    prism_.assign(mesh_.cellCount, 0);
+    if (hybrid_) alignColumns();
+  }
+
+  /// Fans of the polygons of prisms one on the other begin at one edge along the column.
+  void alignColumns() {
+    std::vector<Id> prisms(2 * static_cast<std::size_t>(mesh_.faceCount()), kNone);  // at each polygon
+    PolygonPrism prism;
+    for (Id c = 0; c < mesh_.cellCount; ++c) {
+      if (standard_[c] || !findPrism(mesh_, facesOf_[c], c, prism)) continue;
+      prism_[c] = 1;
+      for (Id f : {prism.base, prism.lid}) prisms[2 * f + (prisms[2 * f] != kNone)] = c;
+    }
+    for (Id f = 0; f < mesh_.faceCount(); ++f)  // the ends of columns
+      if (prisms[2 * f] != kNone && prisms[2 * f + 1] == kNone) alignColumn(f, prisms);
+  }
+
+  void alignColumn(Id first, const std::vector<Id>& prisms) {
+    std::vector<PolygonPrism> column;
+    std::vector<Id> faces{first}, cells{prisms[2 * first]};
+    while (cells.back() != kNone) {
+      column.emplace_back();
+      findPrism(mesh_, facesOf_[cells.back()], cells.back(), column.back());
+      const Id f = column.back().base == faces.back() ? column.back().lid : column.back().base;
+      faces.push_back(f);
+      cells.push_back(prisms[2 * f] == cells.back() ? prisms[2 * f + 1] : prisms[2 * f]);
+    }
+    if (faces.back() < first) return;  // done from the other end
+    double most = 0;
+    for (Id start : mesh_.faces[first]) {
+      std::vector<Id> fans;
+      Id point = start;
+      double worst = kAlways;
+      for (std::size_t i = 0; i < faces.size(); ++i) {
+        const Span<Id> row = mesh_.faces[faces[i]];
+        fans.push_back(static_cast<Id>(std::find(row.begin(), row.end(), point) - row.begin()));
+        if (isBent(faces[i]) || !isFree(faces[i], fans.back())) worst = kNever;
+        if (i == column.size()) break;
+        const std::size_t corner = column[i].cornerOf(point);
+        worst = std::min(worst, wedgeShape(column[i], corner));
+        point = faces[i] == column[i].base ? column[i].above[corner] : column[i].below[corner];
+      }
+      if (!(worst > most)) continue;
+      most = worst;
+      for (std::size_t i = 0; i < faces.size(); ++i) cuts_.fan[faces[i]] = fans[i];
+    }
+  }
+
+  /// Worst shape of the tetrahedra at the corners of a prism's wedges.
+  double wedgeShape(const PolygonPrism& prism, std::size_t corner) const {
+    double worst = kAlways;
+    forEachWedge(prism, corner, [&](const std::array<Id, 3>& below, const std::array<Id, 3>& above) {
+      for (int i = 0; i < 3; ++i) {
+        const Id j = (i + 1) % 3, k = (i + 2) % 3;
+        worst = std::min({worst, tetShape(at(below[i]), at(below[k]), at(below[j]), at(above[i])),
+                          tetShape(at(above[i]), at(above[j]), at(above[k]), at(below[i]))});
+      }
+    });
+    return worst;
+  }
+
+  /// Whether the fans of both polygons of a prism fit, its quads are whole, and its wedges have volume.
+  bool becomesWedges(Id c) const {
+    PolygonPrism prism;
+    if (!prism_[c] || !findPrism(mesh_, facesOf_[c], c, prism)) return false;
+    for (Id f : facesOf_[c])
+      if (mesh_.faces[f].size() == 4 ? cuts_.fan[f] != CellCuts::kWhole : cuts_.fan[f] < 0) return false;
+    const std::size_t corner = prism.cornerOf(mesh_.faces[prism.base][cuts_.fan[prism.base]]);
+    return corner == prism.cornerOf(mesh_.faces[prism.lid][cuts_.fan[prism.lid]]) &&
+           wedgeShape(prism, corner) > 0;
   }
 
   static void sortOut(std::vector<Id>& ids) {
@@ -205,6 +281,10 @@ class CutChooser::Impl {
   void chooseApex(Id c) {
     if (staysWhole(c)) {
       cuts_.apex[c] = CellCuts::kWhole;
+      return;
+    }
+    if (prism_[c] && becomesWedges(c)) {
+      cuts_.apex[c] = CellCuts::kWedges;
       return;
     }
     if (!centred_[c] && chooseOwnPoint(c)) return;
@@ -296,7 +376,7 @@ class CutChooser::Impl {
     std::vector<char> fails(mesh_.cellCount, 0);
     tbb::parallel_for(Id(0), mesh_.cellCount, [&](Id c) {
       const Id apex = cuts_.apex[c];
-      if (apex == CellCuts::kWhole) return;
+      if (apex < CellCuts::kCentre) return;
       const bool centre = apex == CellCuts::kCentre;
       fails[c] = !(coneShape(c, centre ? cuts_.cellCentre[c] : mesh_.points[apex], apex, 0) > 0);
     });
@@ -357,11 +437,13 @@ class CutChooser::Impl {
   const Csr<Id> facesOf_, pointsOf_, facesAt_;
   const PointOrder order_;
   CellCuts cuts_;
-  std::vector<double> needed_;  // #C shape that is good enough
-  std::vector<char> bad_;       // #F by 2: a cell's centre wants the face cut otherwise
-  std::vector<char> settled_;   // #F the face is cut for good
-  std::vector<char> standard_;  // #C
-  std::vector<char> centred_;   // #C the apex may not be a point of the cell's own
+  std::vector<Vec3> faceCentre_, cellCentre_;  // before they were moved
+  std::vector<double> needed_;                 // #C shape that is good enough
+  std::vector<char> bad_;                      // #F by 2: a cell's centre wants the face cut otherwise
+  std::vector<char> settled_;                  // #F the face is cut for good
+  std::vector<char> standard_;                 // #C
+  std::vector<char> prism_;                    // #C a prism over a polygon, that may become wedges
+  std::vector<char> centred_;                  // #C the apex may not be a point of the cell's own
 };
 
 CutChooser::CutChooser(const PolyMesh& mesh, bool hybrid) : impl_(std::make_unique<Impl>(mesh, hybrid)) {}

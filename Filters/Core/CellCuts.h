@@ -4,8 +4,9 @@
 //
 // A face is cut once, for both its cells: it stays whole, or becomes the triangles of the fan from one of its
 // corners, or triangles about its centre. The pieces of a cell's faces, coned to an apex, are its new cells;
-// the apex is one of the cell's own points, whose pieces then are no base, or a new point inside. So whatever
-// is chosen is conformal, and two small numbers say it all.
+// the apex is one of the cell's own points, whose pieces then are no base, or a new point inside. A prism
+// over a polygon may become wedges instead. So whatever is chosen is conformal, and two small numbers say it
+// all.
 //
 // Sources: thesis 4.1 and 4.3 (central tetrahedra); J. Dompierre, P. Labbe, M.-G. Vallet, R. Camarero, "How
 // to Subdivide Pyramids, Prisms, and Hexahedra into Tetrahedra", 1999 (fans by one order of all points, which
@@ -22,10 +23,11 @@
 namespace pm {
 
 struct CellCuts {
+  static constexpr Id kWedges = -3;  ///< a prism over a polygon, cut over the polygon's fan
   static constexpr Id kWhole = -2;   ///< not cut
   static constexpr Id kCentre = -1;  ///< about a new point
   std::vector<Id> fan;               // #F kWhole, kCentre, or the corner (position in the face) of the fan
-  std::vector<Id> apex;              // #C kWhole, kCentre, or the point its pieces are coned to
+  std::vector<Id> apex;              // #C kWedges, kWhole, kCentre, or the point its pieces are coned to
   std::vector<Vec3> faceCentre;      // #F where the new point of a face would be
   std::vector<Vec3> cellCentre;      // #C where the new point of a cell would be
 };

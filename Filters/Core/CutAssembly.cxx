@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "PolygonPrism.h"
+
 namespace pm {
 namespace {
 
@@ -30,7 +32,7 @@ std::vector<Id> sumUp(const std::vector<Id>& lengths) {
 struct SidePiece {
   Piece piece;
   Id number;    // among all pieces
-  Id newCell;   // of the cone on it, from 0; kNone when the apex is one of its corners
+  Id newCell;   // that it is a face of, from 0
   bool turned;  // the cell is the neighbour of the piece's face
 };
 
@@ -40,7 +42,14 @@ struct PieceEdge {
   bool upward;  // runs from low to high
 };
 
-/// One old cell while it is cut; its buffers are used again for the next.
+/// A face between two new cells of an old one; it leaves `cell`.
+struct InnerFace {
+  Piece piece;
+  Id cell, other;
+};
+
+/// One old cell while it is cut; its buffers are used again for the next. Ids of points: the mesh's, then the
+/// centres of faces, then those of cells.
 class CellCutter {
  public:
   CellCutter(const PolyMesh& mesh, const CellCuts& cuts, const Csr<Id>& facesOf,
@@ -49,53 +58,55 @@ class CellCutter {
 
   void cut(Id cell) {
     sides_.clear();
-    newCells_ = 0;
+    inner_.clear();
+    newCells_ = 1;
     const Id apex = cuts_.apex[cell];
-    for (Id f : facesOf_[cell]) {
-      Id number = pieceStart_[f];
-      if (apex == CellCuts::kWhole) {
-        sides_.push_back({{}, number, 0, mesh_.owner[f] != cell});
-        continue;
-      }
-      forEachPiece(mesh_.faces[f], cuts_.fan[f], static_cast<Id>(mesh_.points.size()) + f,
-                   mesh_.owner[f] != cell, [&](const Piece& piece) {
-                     const Id newCell = apex >= 0 && piece.has(apex) ? kNone : newCells_++;
-                     sides_.push_back({piece, number++, newCell, mesh_.owner[f] != cell});
-                   });
-    }
-    edges_.clear();
     if (apex == CellCuts::kWhole)
-      newCells_ = 1;
+      for (Id f : facesOf_[cell]) sides_.push_back({{}, pieceStart_[f], 0, mesh_.owner[f] != cell});
+    else if (apex == CellCuts::kWedges)
+      cutIntoWedges(cell);
     else
-      pairEdges();
+      cutIntoCones(cell, apex);
   }
 
   Id newCells() const { return newCells_; }
-  /// Faces between two new cells: one for each edge between two pieces that have cones.
-  Id innerFaces() const {
-    Id count = 0;
-    forEachInner([&](Id, Id, Id, Id) { ++count; });
-    return count;
-  }
   const std::vector<SidePiece>& sides() const { return sides_; }
+  const std::vector<InnerFace>& inner() const { return inner_; }
 
-  /// Calls body(p, q, newCell, other) for inner faces: q, p, apex leaves newCell.
+ private:
+  Id faceCentre(Id f) const { return static_cast<Id>(mesh_.points.size()) + f; }
+
   template <class Body>
-  void forEachInner(const Body& body) const {
-    for (std::size_t i = 0; i + 1 < edges_.size(); i += 2) {
-      const PieceEdge& edge = edges_[i];
-      const Id cell = sides_[edge.piece].newCell, other = sides_[edges_[i + 1].piece].newCell;
-      if (cell == kNone || other == kNone) continue;
-      if (edge.upward)
-        body(edge.low, edge.high, cell, other);
-      else
-        body(edge.high, edge.low, cell, other);
+  void forEachSide(Id cell, const Body& body) {
+    for (Id f : facesOf_[cell]) {
+      Id number = pieceStart_[f];
+      const bool turned = mesh_.owner[f] != cell;
+      forEachPiece(mesh_.faces[f], cuts_.fan[f], faceCentre(f), turned, [&](const Piece& piece) {
+        sides_.push_back({piece, number++, body(piece), turned});
+      });
     }
   }
 
- private:
-  /// Edges in pairs; a piece that holds the apex is a face of the cone beyond its one edge that does not.
-  void pairEdges() {
+  void cutIntoCones(Id cell, Id apex) {
+    newCells_ = 0;
+    forEachSide(cell, [&](const Piece& piece) { return apex >= 0 && piece.has(apex) ? kNone : newCells_++; });
+    const Id tip = apex >= 0 ? apex : faceCentre(mesh_.faceCount()) + cell;
+    sortEdges();
+    // Beyond an edge of a piece that holds the apex is the one cone that this piece is a face of.
+    for (std::size_t i = 0; i + 1 < edges_.size(); i += 2) {
+      const PieceEdge& edge = edges_[i];
+      SidePiece &a = sides_[edge.piece], &b = sides_[edges_[i + 1].piece];
+      const bool coneA = !a.piece.has(tip), coneB = !b.piece.has(tip);
+      if (coneA && !coneB) b.newCell = a.newCell;
+      if (coneB && !coneA) a.newCell = b.newCell;
+      if (!coneA || !coneB) continue;
+      const Id from = edge.upward ? edge.low : edge.high, to = edge.upward ? edge.high : edge.low;
+      inner_.push_back({{{to, from, tip, kNone}, 3}, a.newCell, b.newCell});
+    }
+  }
+
+  void sortEdges() {
+    edges_.clear();
     for (std::size_t s = 0; s < sides_.size(); ++s) {
       const Piece& piece = sides_[s].piece;
       for (int i = 0; i < piece.size; ++i) {
@@ -106,26 +117,39 @@ class CellCutter {
     std::sort(edges_.begin(), edges_.end(), [](const PieceEdge& a, const PieceEdge& b) {
       return a.low != b.low ? a.low < b.low : a.high != b.high ? a.high < b.high : a.piece < b.piece;
     });
-    owner_.assign(sides_.size(), kNone);
-    for (std::size_t i = 0; i + 1 < edges_.size(); i += 2) {
-      SidePiece &a = sides_[edges_[i].piece], &b = sides_[edges_[i + 1].piece];
-      if (a.newCell == kNone && b.newCell != kNone) owner_[edges_[i].piece] = b.newCell;
-      if (b.newCell == kNone && a.newCell != kNone) owner_[edges_[i + 1].piece] = a.newCell;
+  }
+
+  /// Wedge i lies over corners 0, i + 1 and i + 2 of the base, counted from where its fan begins.
+  void cutIntoWedges(Id cell) {
+    PolygonPrism prism;
+    findPrism(mesh_, facesOf_[cell], cell, prism);
+    const std::size_t n = prism.size();
+    const std::size_t start = prism.cornerOf(mesh_.faces[prism.base][cuts_.fan[prism.base]]);
+    newCells_ = static_cast<Id>(n) - 2;
+    forEachSide(cell, [&](const Piece& piece) {
+      std::size_t least = n, most = 0;
+      for (int i = 0; i < piece.size; ++i) {
+        const std::size_t corner = (prism.cornerOf(piece.corner[i]) + n - start) % n;
+        if (corner > 0) least = std::min(least, corner);
+        most = std::max(most, corner);
+      }
+      // Corners 0, 1 and 0, n - 1 are those of the outer quads of the first and the last wedge.
+      return static_cast<Id>(most == least && least == 1 ? 0 : most - 2);
+    });
+    for (std::size_t i = 2; i + 1 < n; ++i) {
+      const std::size_t corner = prism.next(start, i);
+      const Piece quad{{prism.below[start], prism.below[corner], prism.above[corner], prism.above[start]}, 4};
+      inner_.push_back({quad, static_cast<Id>(i) - 2, static_cast<Id>(i) - 1});
     }
   }
 
- public:
-  /// The new cell that has a side's piece as a face.
-  Id cellOfSide(std::size_t s) const { return sides_[s].newCell != kNone ? sides_[s].newCell : owner_[s]; }
-
- private:
   const PolyMesh& mesh_;
   const CellCuts& cuts_;
   const Csr<Id>& facesOf_;
   const std::vector<Id>& pieceStart_;
   Id newCells_ = 0;
   std::vector<SidePiece> sides_;
-  std::vector<Id> owner_;  // of a side whose piece holds the apex
+  std::vector<InnerFace> inner_;
   std::vector<PieceEdge> edges_;
 };
 
@@ -171,7 +195,7 @@ class Assembly {
     std::vector<Id> cells(mesh_.cellCount), inner(mesh_.cellCount);
     forEachCell(0.1, [&](Id c, const CellCutter& cutter) {
       cells[c] = cutter.newCells();
-      inner[c] = cutter.innerFaces();
+      inner[c] = static_cast<Id>(cutter.inner().size());
     });
     cellStart_ = sumUp(cells);
     innerStart_ = sumUp(inner);
@@ -200,18 +224,24 @@ class Assembly {
   }
 
   Id finalId(Id point) const {
-    const Id count = static_cast<Id>(mesh_.points.size());
-    return point < count ? point : facePoint_[point - count];
+    const Id points = static_cast<Id>(mesh_.points.size()), faces = mesh_.faceCount();
+    if (point < points) return point;
+    return point < points + faces ? facePoint_[point - points] : cellPoint_[point - points - faces];
   }
 
-  /// Rows of all faces: internal pieces, faces inside old cells (three points each), boundary pieces.
+  /// Rows of all faces: internal pieces, faces inside old cells (of quads where they are wedges), boundary
+  /// pieces.
   void fillPieces() {
     monitor_.check(0.4, "cutting faces");
     const Id internal = mesh_.internalFaces(), inner = innerStart_.back();
     const Id pieces = pieceStart_.back(), firstBoundary = pieceStart_[internal];
     std::vector<Id>& offsets = out_.faces.offsets;
     offsets.assign(static_cast<std::size_t>(pieces) + inner + 1, 0);
-    std::fill_n(offsets.begin() + 1 + firstBoundary, inner, 3);
+    tbb::parallel_for(Id(0), mesh_.cellCount, [&](Id c) {
+      std::fill(offsets.begin() + 1 + firstBoundary + innerStart_[c],
+                offsets.begin() + 1 + firstBoundary + innerStart_[c + 1],
+                cuts_.apex[c] == CellCuts::kWedges ? 4 : 3);
+    });
     out_.patch.resize(pieces - firstBoundary);
     const auto newFace = [&](Id piece) { return piece < firstBoundary ? piece : piece + inner; };
     tbb::parallel_for(Id(0), mesh_.faceCount(), [&](Id f) {
@@ -252,21 +282,17 @@ class Assembly {
         out_.layer[n] = mesh_.layer[c];
         if (!mesh_.zone.empty()) out_.zone[n] = mesh_.zone[c];
       }
-      for (std::size_t s = 0; s < cutter.sides().size(); ++s) {
-        const SidePiece& side = cutter.sides()[s];
+      for (const SidePiece& side : cutter.sides()) {
         const Id face = side.number < firstBoundary ? side.number : side.number + inner;
-        (side.turned ? out_.neighbour : out_.owner)[face] = first + cutter.cellOfSide(s);
+        (side.turned ? out_.neighbour : out_.owner)[face] = first + side.newCell;
       }
-      const Id apex = cuts_.apex[c] == CellCuts::kCentre ? cellPoint_[c] : cuts_.apex[c];
       Id face = firstBoundary + innerStart_[c];
-      cutter.forEachInner([&](Id p, Id q, Id cell, Id other) {
-        out_.owner[face] = first + cell;
-        out_.neighbour[face] = first + other;
+      for (const InnerFace& found : cutter.inner()) {
+        out_.owner[face] = first + found.cell;
+        out_.neighbour[face] = first + found.other;
         Id* row = out_.faces.values.data() + out_.faces.offsets[face++];
-        row[0] = finalId(q);
-        row[1] = finalId(p);
-        row[2] = apex;
-      });
+        for (int i = 0; i < found.piece.size; ++i) row[i] = finalId(found.piece.corner[i]);
+      }
     });
     out_.patchNames = mesh_.patchNames;
     out_.patchTypes = mesh_.patchTypes;

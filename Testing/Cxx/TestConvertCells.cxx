@@ -252,19 +252,35 @@ TEST(ConvertCells, UniformCubesAreSixTetrahedraEach) {
   expectConverted(mesh, 1e-12);
 }
 
-/// Two pentagonal prisms and cubes beside them: only the prisms are cut, and cubes see them through pyramids.
-TEST(ConvertCells, HybridCutsOnlyWhatIsNoStandardCell) {
+/// A square and a pentagon, each with a cell below and a prism above: the pentagon's become wedges.
+TEST(ConvertCells, HybridCutsPrismsOverPolygonsIntoWedges) {
   const PolyMesh mesh = layeredPolygons({{0, 0}, {1, 0}, {2, 0}, {2, 1}, {1, 1}, {0, 1}, {2.8, 0.5}},
                                         {{0, 1, 4, 5}, {1, 2, 6, 3, 4}}, 0.3);
   ConvertCellsReport report;
   const PolyMesh out = converted(mesh, CellShapes::Hybrid, &report);
-  EXPECT_EQ(report.cellsThatStay, 2);  // the square's core and prism
+  EXPECT_EQ(report.cellsThatStay, 2);
   EXPECT_EQ(report.hexahedra, 2);
-  EXPECT_EQ(report.pyramids, 2 * 5);    // on the quads around each pentagonal cell
-  EXPECT_EQ(report.tetrahedra, 2 * 6);  // on both pentagons' three triangles
-  EXPECT_EQ(report.cellCentres, 2);
-  EXPECT_EQ(report.faceCentres, 0);
+  EXPECT_EQ(report.wedges, 2 * 3);
+  EXPECT_EQ(out.cellCount, 8);
+  EXPECT_EQ(out.points.size(), mesh.points.size());
   expectConverted(mesh, 1e-12);
+}
+
+/// Cubes beside smaller ones are cut into pyramids and tetrahedra; all others stay.
+TEST(ConvertCells, HybridCutsOnlyWhatIsNoStandardCell) {
+  const PolyMesh mesh = levels();
+  Id cubes = 0;
+  for (const NewCell& cell : gatherCells(mesh))
+    cubes += cell.quads == 6 && cell.triangles + cell.others == 0 && cell.points.size() == 8;
+  ASSERT_GT(cubes, 0);
+  ASSERT_LT(cubes, mesh.cellCount);
+  ConvertCellsReport report;
+  converted(mesh, CellShapes::Hybrid, &report);
+  EXPECT_EQ(report.cellsThatStay, cubes);
+  EXPECT_EQ(report.hexahedra, cubes);
+  EXPECT_LE(report.cellCentres, mesh.cellCount - cubes);
+  EXPECT_EQ(report.faceCentres, 0);
+  EXPECT_GT(report.pyramids, 0);
 }
 
 TEST(ConvertCells, HybridKeepsLayersAsTheyAre) {
