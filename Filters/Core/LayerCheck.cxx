@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <tuple>
 
 namespace pm {
 namespace {
@@ -52,11 +53,49 @@ struct CellFaces {
 
 }  // namespace
 
+const char* describe(LayerReason reason) {
+  static const char* const kWords[kLayerReasons] = {
+      "all layers made",
+      "no layers wanted",
+      "the cell is no prism",
+      "the prism is not high enough",
+      "a cell would be folded",
+      "a face would be degenerate",
+      "a face would be too warped",
+      "an internal face would be too oblique",
+      "a boundary face would be too oblique",
+      "a face would be too skew",
+      "a neighbour has fewer layers",
+  };
+  return kWords[static_cast<int>(reason)];
+}
+
+LayerReason faceFault(const std::vector<Vec3>& points, Span<Id> row, const FaceMeasures& face,
+                      const CellCentres& owner, const CellCentres* neighbour, const QualityLimits& limits) {
+  if (face.warpage() > limits.maxWarpage) return LayerReason::Warpage;
+  if (neighbour == nullptr) {
+    if (faceAngle(face.normal, face.centre - owner.thesis) > limits.maxAngleBoundary)
+      return LayerReason::AngleBoundary;
+    return boundarySkewness(points, row, face, owner.foam) > limits.maxSkewBoundary ? LayerReason::Skewness
+                                                                                    : LayerReason::None;
+  }
+  if (faceAngle(face.normal, neighbour->thesis - owner.thesis) > limits.maxAngleInternal ||
+      faceAngle(face.normal, neighbour->foam - owner.foam) > limits.maxAngleInternal)
+    return LayerReason::AngleInternal;
+  return internalSkewness(points, row, face, owner.foam, neighbour->foam) > limits.maxSkewInternal
+             ? LayerReason::Skewness
+             : LayerReason::None;
+}
+
+bool cellHolds(const CellMeasures& cell, const QualityLimits& limits, double unit) {
+  // A hair above zero, so that rounding in another program does not find it negative.
+  const double least = std::max(limits.minTet * unit * unit * unit, 1e-6 * cell.volume);
+  return cell.volume > 0 && std::min(cell.minTet, cell.minPyramid) > least;
+}
+
 LayerCheck::LayerCheck(const PolyMesh& mesh, const LayerColumns& columns, const std::vector<Vec3>& points,
                        const QualityLimits& limits)
     : mesh_(mesh), columns_(columns), points_(points), limits_(limits) {
-  const double unit = mesh.finestSize * mesh.finestSize * mesh.finestSize;
-  minTet_ = limits.minTet * unit;
   centreStart_.assign(1, 0);
   for (Id c = 0; c < columns.count(); ++c) centreStart_.push_back(centreStart_.back() + columns.layers(c));
   centres_.resize(centreStart_.back());
@@ -69,18 +108,20 @@ LayerCheck::LayerCheck(const PolyMesh& mesh, const LayerColumns& columns, const 
     if (columnA != columnB) beside.push_back(columnA ? b : a);
   }
   sortUnique(beside);
-  forEach(beside.size(), [&](std::size_t i) {
-    thread_local CellFaces faces;
-    faces.clear();
-    for (Id f : columns.facesOf(beside[i])) {
-      faces.row.assign(mesh.faces[f].begin(), mesh.faces[f].end());
-      faces.add(mesh.owner[f] == beside[i] ? 1 : -1);
-    }
-    otherCentres_[beside[i]] = CellCentres(faces.measure(points));
-  });
+  forEach(beside.size(), [&](std::size_t i) { measureBeside(beside[i]); });
 }
 
-const LayerCheck::CellCentres& LayerCheck::centre(Id cell, Id layer) const {
+void LayerCheck::measureBeside(Id cell) {
+  thread_local CellFaces faces;
+  faces.clear();
+  for (Id f : columns_.facesOf(cell)) {
+    faces.row.assign(mesh_.faces[f].begin(), mesh_.faces[f].end());
+    faces.add(mesh_.owner[f] == cell ? 1 : -1);
+  }
+  otherCentres_[cell] = CellCentres(faces.measure(points_));
+}
+
+const CellCentres& LayerCheck::centre(Id cell, Id layer) const {
   const Id column = columns_.columnOf(cell);
   return column == kNone ? otherCentres_[cell] : centres_[centreStart_[column] + layer - 1];
 }
@@ -102,45 +143,31 @@ bool LayerCheck::measureColumn(Id column) {
     }
     for (Id level : {layer - 1, layer}) {
       if (level == 0 || level == layers) continue;
-      for (Id part = 0; part < columns_.capParts(column); ++part) {
-        columns_.capRow(column, level, part, faces.row);
-        faces.add(level < layer ? 1 : -1);
-      }
+      columns_.capRow(column, level, faces.row);
+      faces.add(level < layer ? 1 : -1);
     }
     const CellMeasures m = faces.measure(points_);
     centres_[centreStart_[column] + layer - 1] = CellCentres(m);
-    // A hair above zero, so that rounding in another program does not find it negative.
-    good = good && m.volume > 0 && std::min(m.minTet, m.minPyramid) > std::max(minTet_, 1e-6 * m.volume);
+    good = good && cellHolds(m, limits_, mesh_.finestSize);
   }
   return good;
 }
 
-bool LayerCheck::holds(const std::vector<Id>& row, const FaceMeasures& face, const CellCentres& owner,
-                       const CellCentres* neighbour) const {
-  const bool inner = neighbour != nullptr;
-  const Vec3 direction = (inner ? neighbour->thesis : face.centre) - owner.thesis;
-  if (inner && faceAngle(face.normal, neighbour->foam - owner.foam) > limits_.maxAngleInternal) return false;
-  const double skew = inner ? internalSkewness(points_, span(row), face, owner.foam, neighbour->foam)
-                            : boundarySkewness(points_, span(row), face, owner.foam);
-  return face.warpage() <= limits_.maxWarpage &&
-         faceAngle(face.normal, direction) <= (inner ? limits_.maxAngleInternal : limits_.maxAngleBoundary) &&
-         skew <= (inner ? limits_.maxSkewInternal : limits_.maxSkewBoundary);
-}
-
-bool LayerCheck::capsHold(Id column) const {
+LayerReason LayerCheck::capFault(Id column) const {
   thread_local std::vector<Id> row;
   const Id cell = columns_.cell(column);
-  for (Id level = 1; level < columns_.layers(column); ++level)
-    for (Id part = 0; part < columns_.capParts(column); ++part) {
-      columns_.capRow(column, level, part, row);
-      const FaceMeasures face = measureFace(points_, span(row));
-      if (!(face.eta >= limits_.minEtaInternal)) return false;
-      if (!holds(row, face, centre(cell, level + 1), &centre(cell, level))) return false;
-    }
-  return true;
+  for (Id level = 1; level < columns_.layers(column); ++level) {
+    columns_.capRow(column, level, row);
+    const FaceMeasures face = measureFace(points_, span(row));
+    if (!(face.eta >= limits_.minEtaInternal)) return LayerReason::FaceShape;
+    const LayerReason fault =
+        faceFault(points_, span(row), face, centre(cell, level + 1), &centre(cell, level), limits_);
+    if (fault != LayerReason::None) return fault;
+  }
+  return LayerReason::None;
 }
 
-bool LayerCheck::faceHolds(Id face) const {
+LayerReason LayerCheck::faultOf(Id face) const {
   thread_local std::vector<Id> row;
   const bool inner = face < mesh_.internalFaces();
   const Id own = mesh_.owner[face], next = inner ? mesh_.neighbour[face] : kNone;
@@ -148,21 +175,27 @@ bool LayerCheck::faceHolds(Id face) const {
   for (Id piece = 1; piece <= pieces; ++piece) {
     columns_.pieceRow(face, piece, row);
     const CellCentres* neighbour = inner ? &centre(next, columns_.layerAt(next, face, piece)) : nullptr;
-    const FaceMeasures m = measureFace(points_, span(row));
-    if (!holds(row, m, centre(own, columns_.layerAt(own, face, piece)), neighbour)) return false;
+    const CellCentres& owner = centre(own, columns_.layerAt(own, face, piece));
+    const LayerReason fault =
+        faceFault(points_, span(row), measureFace(points_, span(row)), owner, neighbour, limits_);
+    if (fault != LayerReason::None) return fault;
   }
-  return true;
+  return LayerReason::None;
 }
 
 /// A failure where there is only one layer comes of points that columns beside have put on its edges.
-void LayerCheck::lowerAround(Id column, std::vector<Id>& lower) const {
+void LayerCheck::blame(Id column, LayerReason reason, std::vector<Fault>& faults) const {
+  if (columns_.layers(column) > 1) {
+    faults.push_back({column, reason});
+    return;
+  }
   std::vector<Id> near;
   columns_.around(column, near);
   Id most = 1;
   for (Id c : near) most = std::max(most, columns_.layers(c));
   if (most == 1) return;
   for (Id c : near) {
-    if (columns_.layers(c) == most) lower.push_back(c);
+    if (columns_.layers(c) == most) faults.push_back({c, reason});
   }
 }
 
@@ -178,37 +211,47 @@ std::vector<Id> LayerCheck::facesAround(const std::vector<Id>& changed) {
   return faces;
 }
 
-std::vector<Id> LayerCheck::columnsToLower(const std::vector<Id>& changed) {
-  std::vector<std::uint8_t> columnHolds(changed.size());
-  forEach(changed.size(), [&](std::size_t i) { columnHolds[i] = measureColumn(changed[i]); });
-  forEach(changed.size(), [&](std::size_t i) { columnHolds[i] = columnHolds[i] && capsHold(changed[i]); });
-  const std::vector<Id> faces = facesAround(changed);
-  std::vector<std::uint8_t> holds(faces.size());
-  forEach(faces.size(), [&](std::size_t i) { holds[i] = faceHolds(faces[i]); });
+int LayerCheck::countFaults(const std::vector<Id>& columns) {
+  int count = 0;
+  for (Id c : columns) count += !measureColumn(c);
+  for (Id c : columns) count += capFault(c) != LayerReason::None;
+  for (Id f : facesAround(columns)) count += faultOf(f) != LayerReason::None;
+  return count;
+}
 
-  std::vector<Id> lower;
-  const auto blame = [&](Id column) {
-    if (columns_.layers(column) > 1) {
-      lower.push_back(column);
-    } else {
-      lowerAround(column, lower);
-    }
-  };
+std::vector<LayerCheck::Fault> LayerCheck::columnsToLower(const std::vector<Id>& changed) {
+  std::vector<LayerReason> ofColumn(changed.size(), LayerReason::None);
+  forEach(changed.size(), [&](std::size_t i) {
+    if (!measureColumn(changed[i])) ofColumn[i] = LayerReason::FoldedCell;
+  });
+  forEach(changed.size(), [&](std::size_t i) {
+    if (ofColumn[i] == LayerReason::None) ofColumn[i] = capFault(changed[i]);
+  });
+  const std::vector<Id> faces = facesAround(changed);
+  std::vector<LayerReason> ofFace(faces.size());
+  forEach(faces.size(), [&](std::size_t i) { ofFace[i] = faultOf(faces[i]); });
+
+  std::vector<Fault> faults;
   for (std::size_t i = 0; i < changed.size(); ++i) {
-    if (!columnHolds[i]) blame(changed[i]);
+    if (ofColumn[i] != LayerReason::None) blame(changed[i], ofColumn[i], faults);
   }
   for (std::size_t i = 0; i < faces.size(); ++i) {
-    if (holds[i]) continue;
+    if (ofFace[i] == LayerReason::None) continue;
     const Id f = faces[i], own = mesh_.owner[f];
     const Id next = f < mesh_.internalFaces() ? mesh_.neighbour[f] : own;
     const Id most = std::max(columns_.layersOfCell(own), columns_.layersOfCell(next));
     for (Id cell : {own, next}) {
       const Id column = columns_.columnOf(cell);
-      if (column != kNone && columns_.layers(column) == most) blame(column);
+      if (column != kNone && columns_.layers(column) == most) blame(column, ofFace[i], faults);
     }
   }
-  sortUnique(lower);
-  return lower;
+  std::sort(faults.begin(), faults.end(), [](const Fault& a, const Fault& b) {
+    return std::tie(a.column, a.reason) < std::tie(b.column, b.reason);
+  });
+  faults.erase(std::unique(faults.begin(), faults.end(),
+                           [](const Fault& a, const Fault& b) { return a.column == b.column; }),
+               faults.end());
+  return faults;
 }
 
 }  // namespace pm

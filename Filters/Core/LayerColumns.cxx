@@ -41,7 +41,8 @@ LayerColumns::LayerColumns(const PolyMesh& mesh) : mesh_(mesh), facesOfCell_(cel
   findColumns();
   edgeColumns_ = invert(edges_, mesh.points.size());
   layers_.assign(cells_.size(), 1);
-  parted_.assign(cells_.size(), 0);
+  reason_.assign(cells_.size(), LayerReason::NoPrism);
+  pinched_.assign(mesh.points.size(), 0);
   edgeLayers_.assign(mesh.points.size(), 1);
   firstPoint_.assign(mesh.points.size(), kNone);
 }
@@ -90,7 +91,7 @@ bool LayerColumns::findRing(Id cell, std::vector<Id>& roof, std::vector<Id>& rin
   for (Id f : facesOfCell_[cell]) {
     const Span<Id> row = mesh_.faces[f];
     if (isSide(f)) {
-      const Id b0 = row[sideStart_[f]], b1 = row[(sideStart_[f] + 1) % row.size()];
+      const auto [b0, b1] = lowerEnds(f);
       steps.push_back(mesh_.owner[f] == cell ? std::make_pair(b0, b1) : std::make_pair(b1, b0));
     } else if (f >= internal && mesh_.isWallPatch(mesh_.patch[f - internal])) {
       roof.push_back(f);
@@ -160,13 +161,20 @@ void LayerColumns::around(Id column, std::vector<Id>& out) const {
   out.erase(std::unique(out.begin(), out.end()), out.end());
 }
 
+Id LayerColumns::mostAround(Id lower) const {
+  Id most = 1;
+  for (Id column : edgeColumns_[lower]) most = std::max(most, layers_[column]);
+  return most;
+}
+
 void LayerColumns::updateEdges(const std::vector<Id>& changedColumns) {
-  for (Id column : changedColumns) {
-    for (Id b : rings_[column]) {
-      edgeLayers_[b] = 1;
-      for (Id other : edgeColumns_[b]) edgeLayers_[b] = std::max(edgeLayers_[b], layers_[other]);
-    }
-  }
+  for (Id column : changedColumns)
+    for (Id b : rings_[column]) edgeLayers_[b] = pinched_[b] ? 1 : mostAround(b);
+}
+
+void LayerColumns::pinch(Id lower, bool pinched) {
+  pinched_[lower] = pinched;
+  edgeLayers_[lower] = pinched ? 1 : mostAround(lower);
 }
 
 Id LayerColumns::numberPoints(Id firstId) {
@@ -185,6 +193,8 @@ Id LayerColumns::pointAt(Id lower, Id level) const {
 
 Id LayerColumns::pieces(Id face) const {
   if (!isSide(face)) return 1;
+  const auto [b0, b1] = lowerEnds(face);
+  if (pinched_[b0] && pinched_[b1]) return 1;
   const Id own = layersOfCell(mesh_.owner[face]);
   return face < mesh_.internalFaces() ? std::max(own, layersOfCell(mesh_.neighbour[face])) : own;
 }
@@ -204,33 +214,29 @@ void LayerColumns::pieceRow(Id face, Id piece, std::vector<Id>& row) const {
     });
     return;
   }
-  const Id b0 = old[sideStart_[face]], b1 = old[(sideStart_[face] + 1) % old.size()];
+  const auto [b0, b1] = lowerEnds(face);
   // The last piece reaches down to the lower points and holds whatever lies on the edges on the way.
-  const auto lowest = [&](Id b) { return piece < count ? piece : edgeLayers_[b]; };
-  for (Id level = lowest(b1); level >= piece - 1; --level) row.push_back(pointAt(b1, level));
+  const auto highest = [&](Id b) { return pinched_[b] ? 0 : piece - 1; };
+  const auto lowest = [&](Id b) { return piece == count ? edgeLayers_[b] : pinched_[b] ? 0 : piece; };
+  for (Id level = lowest(b1); level >= highest(b1); --level) row.push_back(pointAt(b1, level));
   const bool joined = piece == 1 && top_[b0] == top_[b1];
-  for (Id level = joined ? 1 : piece - 1; level <= lowest(b0); ++level) row.push_back(pointAt(b0, level));
+  for (Id level = joined ? 1 : highest(b0); level <= lowest(b0); ++level) row.push_back(pointAt(b0, level));
 }
 
 Id LayerColumns::layerAt(Id cell, Id face, Id piece) const {
   const Id layers = layersOfCell(cell);
   if (layers == 1) return 1;
-  if (isSide(face)) return std::min(piece, layers);
+  if (isSide(face)) {
+    const auto [b0, b1] = lowerEnds(face);
+    return pinched_[b0] && pinched_[b1] ? layers : std::min(piece, layers);
+  }
   const Span<Id> roof = roofs_[columnOf_[cell]];
   return std::find(roof.begin(), roof.end(), face) != roof.end() ? 1 : layers;
 }
 
-void LayerColumns::capRow(Id column, Id level, Id part, std::vector<Id>& row) const {
+void LayerColumns::capRow(Id column, Id level, std::vector<Id>& row) const {
   row.clear();
-  const Span<Id> ring = rings_[column];
-  if (capParts(column) == 1) {  // the ring also has both lower points of a merged wall point
-    for (Id b : ring) row.push_back(pointAt(b, level));
-    return;
-  }
-  for (Id p : mesh_.faces[roofs_[column][part]]) {
-    const auto below = std::find_if(ring.begin(), ring.end(), [&](Id b) { return top_[b] == p; });
-    row.push_back(pointAt(*below, level));
-  }
+  for (Id b : rings_[column]) row.push_back(pointAt(b, pinched_[b] ? 0 : level));
 }
 
 }  // namespace pm

@@ -163,6 +163,7 @@ TEST(BoundaryRefine, FewerLayersWhereTheyDoNotFit) {
   BoundaryRefineOptions options;
   options.layers = 6;
   options.firstHeight = 0.05;
+  options.makeRoom = false;
   BoundaryRefineReport report;
   const PolyMesh refined = refine(mesh, options, &report);
   EXPECT_EQ(checkTopology(refined), "");

@@ -2,6 +2,7 @@
 // Boundary layers below wall faces that are cut in parts.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -60,100 +61,94 @@ PolyMesh cutWall(PolyMesh mesh, int nth) {
   return mesh;
 }
 
-/// From the centre of a thin cell its wall's parts are seen at a flat angle.
-QualityLimits aslant() {
-  QualityLimits limits;
-  limits.maxAngleBoundary = 87;
-  return limits;
-}
-
-/// What holds when every wall face of a cut mesh has its three layers.
-PolyMesh expectAllLayers(const PolyMesh& mesh, Id columns, const QualityLimits& limits = aslant()) {
+/// What holds when every wall face of a cut mesh has a prism and three layers of its own.
+PolyMesh expectAllLayers(const PolyMesh& mesh, const QualityLimits& limits = {}) {
   EXPECT_EQ(checkTopology(mesh), "");
-  EXPECT_EQ(describeViolations(mesh, measure(mesh), limits), "");
   BoundaryRefineOptions options;
   options.limits = limits;
+  options.makeRoom = false;
   BoundaryRefineReport report;
   PolyMesh refined = refine(mesh, options, &report);
   EXPECT_EQ(checkTopology(refined), "");
   EXPECT_NEAR(totalVolume(refined) / totalVolume(mesh), 1, 1e-12);
-  EXPECT_EQ(refined.cellCount, mesh.cellCount + 2 * columns);
   EXPECT_EQ(report.facesByLayers, (std::vector<Id>{0, 0, report.wallFaces}));
+  EXPECT_EQ(std::count(refined.layer.begin(), refined.layer.end(), 1), report.wallFaces);
   EXPECT_EQ(describeViolations(refined, measure(refined), thinLimits(limits)), "");
   return refined;
 }
 
-TEST(CutLayers, LayersBelowACutFlatFaceAreWhole) {
+Id wallFaces(const PolyMesh& mesh) {
+  return static_cast<Id>(
+      std::count_if(mesh.patch.begin(), mesh.patch.end(), [&](Id p) { return mesh.isWallPatch(p); }));
+}
+
+TEST(CutLayers, EachPartOfACutFaceHasItsOwnPrism) {
   for (const VoxelOptions& o : {floorOf(4, 3), cubeInBox(), elbow(5), VoxelOptions()}) {
-    const PolyMesh mesh = layeredVoxels(o), plain = refine(mesh, {});
-    const Id columns = (plain.cellCount - mesh.cellCount) / 2;
+    const PolyMesh mesh = layeredVoxels(o);
     for (int nth : {1, 2, 3}) {
-      const PolyMesh cut = cutWall(mesh, nth), refined = expectAllLayers(cut, columns);
-      EXPECT_EQ(refined.internalFaces(), plain.internalFaces());
-      EXPECT_EQ(refined.boundaryFaces() - plain.boundaryFaces(), cut.boundaryFaces() - mesh.boundaryFaces());
-      EXPECT_TRUE(refined.points == plain.points);
+      const PolyMesh cut = cutWall(mesh, nth), refined = expectAllLayers(cut);
+      const Id cuts = wallFaces(cut) - wallFaces(mesh);
+      EXPECT_EQ(refined.cellCount, cut.cellCount + cuts + 2 * wallFaces(cut));
+      // A side face below each cut in three layers, two caps more and one lower face more.
+      EXPECT_EQ(refined.internalFaces(), refine(mesh, {}).internalFaces() + cuts * (3 + 2 + 1));
     }
   }
 }
 
-/// A square prism whose wall is folded along its diagonal, cut there: two corners lie `drop` lower.
-PolyMesh foldedPrism(double drop) {
-  PolyMesh mesh = layeredPolygons({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, {{0, 1, 2, 3}}, 1.2);
-  Id ridge[2] = {kNone, kNone};
-  for (Id p = 0; p < static_cast<Id>(mesh.points.size()); ++p) {
-    Vec3& at = mesh.points[p];
-    if (mesh.base[p] == kNone) continue;
-    if (at.x() == at.y())
-      ridge[static_cast<int>(at.x())] = p;
-    else
-      at.z() -= drop;
-  }
-  for (Id f = mesh.internalFaces(); f < mesh.faceCount(); ++f)
-    if (mesh.isWallPatch(mesh.patch[f - mesh.internalFaces()])) {
-      cutWallFaces(mesh, {{f, ridge[0], ridge[1]}});
-      break;
+TEST(CutLayers, OneLayerLeavesCutFacesAsTheyAre) {
+  BoundaryRefineOptions options;
+  options.layers = 1;
+  PolyMesh cut = cutWall(layeredVoxels(elbow(5)), 2);
+  const PolyMesh refined = refine(cut, options);
+  cut.stage = Stage::Refined;
+  EXPECT_EQ(checksum(refined), checksum(cut));
+}
+
+TEST(CutLayers, LayersFollowAFoldUpAndDown) {
+  // A ridge or a valley along x = y, cut there: sharper than the layers are high.
+  for (const double slope : {-0.15, 0.15}) {
+    VoxelOptions o = floorOf(5, 5);
+    o.deform = [slope](const Vec3& p) {
+      return p.z() <= 2 ? p : Vec3(p.x(), p.y(), p.z() + 0.1 - slope * std::abs(p.x() - p.y()) * 0.5);
+    };
+    const PolyMesh mesh = layeredVoxels(o);
+    std::vector<WallCut> cuts;
+    for (Id f = mesh.internalFaces(); f < mesh.faceCount(); ++f) {
+      if (!mesh.isWallPatch(mesh.patch[f - mesh.internalFaces()])) continue;
+      std::vector<Id> onRidge;
+      for (Id p : mesh.faces[f])
+        if (mesh.points[p].x() == mesh.points[p].y()) onRidge.push_back(p);
+      if (onRidge.size() == 2) cuts.push_back({f, onRidge[0], onRidge[1]});
     }
-  canonicalise(mesh);
-  return mesh;
-}
-
-TEST(CutLayers, LayersBelowAStrongFoldAreInPartsLikeTheWall) {
-  QualityLimits limits = aslant();
-  limits.maxWarpage = 15;
-  const PolyMesh flat = expectAllLayers(foldedPrism(0.1), 1, limits),
-                 folded = expectAllLayers(foldedPrism(0.5), 1, limits);
-  EXPECT_EQ(flat.internalFaces(), 1 + 2);
-  EXPECT_EQ(folded.internalFaces(), 1 + 2 * 2);
-  // The parts follow the wall: two flat sides to each layer.
-  const MeshMeasures m = measure(folded);
-  for (Id f = 0; f < folded.internalFaces(); ++f) EXPECT_NEAR(m.faces[f].warpage(), 0, 1e-5) << "face " << f;
-}
-
-TEST(CutLayers, PartedLayersBesideWholeOnes) {
-  // A ridge along x = y: faces on it are folded, the others flat.
-  VoxelOptions o = floorOf(5, 5);
-  o.deform = [](const Vec3& p) {
-    return p.z() <= 2 ? p : Vec3(p.x(), p.y(), p.z() + 0.3 - 0.1 * std::abs(p.x() - p.y()));
-  };
-  const PolyMesh mesh = layeredVoxels(o);
-  std::vector<WallCut> cuts;
-  for (Id f = mesh.internalFaces(); f < mesh.faceCount(); ++f) {
-    if (!mesh.isWallPatch(mesh.patch[f - mesh.internalFaces()])) continue;
-    std::vector<Id> onRidge;
-    for (Id p : mesh.faces[f])
-      if (mesh.points[p].x() == mesh.points[p].y()) onRidge.push_back(p);
-    if (onRidge.size() == 2) cuts.push_back({f, onRidge[0], onRidge[1]});
+    ASSERT_EQ(cuts.size(), 5u);
+    PolyMesh cut = mesh;
+    cutWallFaces(cut, cuts);
+    canonicalise(cut);
+    BoundaryRefineOptions options;
+    options.firstHeight = 0.01;
+    options.makeRoom = false;
+    BoundaryRefineReport report;
+    const PolyMesh refined = refine(cut, options, &report);
+    EXPECT_EQ(report.facesByLayers, (std::vector<Id>{0, 0, 30}));
+    EXPECT_EQ(describeViolations(refined, measure(refined), thinLimits({})), "");
   }
-  ASSERT_EQ(cuts.size(), 5u);
-  PolyMesh cut = mesh;
-  cutWallFaces(cut, cuts);
-  canonicalise(cut);
-  QualityLimits limits = aslant();
-  const PolyMesh whole = expectAllLayers(cut, 25, limits);
-  limits.maxWarpage = 5;
-  const PolyMesh parted = expectAllLayers(cut, 25, limits);
-  EXPECT_EQ(parted.internalFaces(), whole.internalFaces() + 2 * 5);
-  EXPECT_EQ(parted.boundaryFaces(), whole.boundaryFaces());
+}
+
+TEST(CutLayers, ASplitThatBreaksALimitIsNotMade) {
+  // Parts of a long face are long triangles: their cells' centres are aslant to the diagonal between them.
+  VoxelOptions o = floorOf(4, 3);
+  o.deform = [](const Vec3& p) { return Vec3(2 * p.x(), p.y(), p.z()); };
+  const PolyMesh mesh = cutWall(layeredVoxels(o), 1);
+  QualityLimits limits;
+  limits.maxAngleInternal = 30;
+  BoundaryRefineOptions options;
+  options.limits = limits;
+  BoundaryRefineReport report;
+  const PolyMesh refined = refine(mesh, options, &report);
+  EXPECT_EQ(checkTopology(refined), "");
+  EXPECT_EQ(report.wallFaces, 24);
+  EXPECT_LT(std::count(refined.layer.begin(), refined.layer.end(), 1), 24);
+  EXPECT_EQ(describeViolations(refined, measure(refined), thinLimits(limits)), "");
 }
 
 TEST(CutLayers, CutFacesBesideMergedWallNodes) {
@@ -168,7 +163,7 @@ TEST(CutLayers, CutFacesBesideMergedWallNodes) {
   merged.points[pair[0]].y() = 1.5;
   const PolyMesh cut = cutWall(merged, 1);
   EXPECT_EQ(cut.boundaryFaces(), merged.boundaryFaces() + 10);  // two are triangles
-  expectAllLayers(cut, 12);
+  expectAllLayers(cut);
 }
 
 TEST(CutLayers, CutFacesGetAsManyLayersAsTheLimitsAllow) {
@@ -184,7 +179,7 @@ TEST(CutLayers, CutFacesGetAsManyLayersAsTheLimitsAllow) {
     EXPECT_GE(refined.cellCount, last);
     last = refined.cellCount;
   }
-  EXPECT_EQ(last, mesh.cellCount + 2 * 6);
+  EXPECT_EQ(last, mesh.cellCount + 3 + 2 * 9);
 }
 
 TEST(CutLayers, PolygonsCutSeveralTimes) {
@@ -194,9 +189,7 @@ TEST(CutLayers, PolygonsCutSeveralTimes) {
   const PolyMesh once = cutWall(mesh, 1), twice = cutWall(once, 1);
   EXPECT_EQ(once.boundaryFaces(), mesh.boundaryFaces() + 3);
   EXPECT_EQ(twice.boundaryFaces(), once.boundaryFaces() + 1);
-  const PolyMesh plain = refine(mesh, {});
-  for (const PolyMesh& cut : {once, twice})
-    EXPECT_EQ(expectAllLayers(cut, 3).internalFaces(), plain.internalFaces());
+  for (const PolyMesh& cut : {once, twice}) expectAllLayers(cut);
 }
 
 TEST(CutLayers, CutFacesGiveTheSameBitsForAnyNumberOfThreads) {

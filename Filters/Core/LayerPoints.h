@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where the points between layers lie on the prism edges.
+//
+// They need not lie on the straight line from the wall to the lower point: where that is not valid, the edge
+// takes another course. It may leave the wall in the direction that sees all wall faces and bend to its lower
+// end, its layers may be a fraction as high, or it may be pinched: its layers taper to nothing at the wall
+// point. Courses are numbered; 0 is the straight one.
+#pragma once
+
+#include "LayerColumns.h"
+#include "WallSight.h"
+
+namespace pm {
+
+/// Heights of the layers on one edge, measured along it.
+struct EdgeHeights {
+  double first = 0;      ///< of the layer at the wall
+  double expansion = 1;  ///< of a layer over that before it
+  /// From the wall to the end of `layers` layers.
+  double sum(Id layers) const;
+};
+
+class LayerPoints {
+ public:
+  static constexpr int kCourses = 8;
+
+  /// heights: #P by lower point. Numbers the points of the columns' edges behind the mesh's own and places
+  /// them straight; an edge that sees hardly anything of its wall is pinched. All arguments must outlive
+  /// this.
+  LayerPoints(const PolyMesh& mesh, LayerColumns& columns, const WallSight& sight,
+              const std::vector<EdgeHeights>& heights);
+
+  /// The mesh's points and behind them those on the edges.
+  const std::vector<Vec3>& all() const { return all_; }
+  int course(Id lower) const { return course_[lower]; }
+  /// False when the edge cannot take it: one of several edges that end in one wall point stays as it is.
+  bool setCourse(Id lower, int course);
+  /// Puts the points of an edge anew after its lower point was moved.
+  void follow(Id lower);
+
+ private:
+  const PolyMesh& mesh_;
+  LayerColumns& columns_;
+  const WallSight& sight_;
+  const std::vector<EdgeHeights>& heights_;
+  std::vector<Vec3> all_;
+  std::vector<std::uint8_t> course_;  // #P
+  std::vector<std::uint8_t> single_;  // #P whether a wall point has one prism edge
+};
+
+}  // namespace pm

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "LayerSearch.h"
+
+#include <algorithm>
+
+namespace pm {
+namespace {
+
+void sortUnique(std::vector<Id>& ids) {
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+}
+
+/// Places for the lower end of an edge: below the wall point where all of the wall is seen, nearer and
+/// farther on the edge, and to all sides.
+std::vector<Vec3> places(const Vec3& wall, const Vec3& lower, const Vec3& best) {
+  constexpr double kLengths[] = {1, 0.6, 1.5}, kParts[] = {1, 0.5}, kScales[] = {0.7, 1.5}, kAside = 0.25;
+  const Vec3 edge = lower - wall;
+  const double length = edge.norm();
+  std::vector<Vec3> list;
+  for (double l : kLengths)
+    for (double part : kParts) list.push_back(lower + part * (wall + l * length * best - lower));
+  for (double scale : kScales) list.push_back(wall + scale * edge);
+  for (int axis = 0; axis < 3; ++axis)
+    for (double side : {-kAside, kAside}) list.push_back(lower + side * length * Vec3::Unit(axis));
+  return list;
+}
+
+}  // namespace
+
+LayerSearch::LayerSearch(PolyMesh& mesh, LayerColumns& columns, LayerPoints& points, const WallSight& sight,
+                         LayerCheck& check, const QualityLimits& limits, const std::vector<Id>& faulty,
+                         const Monitor& monitor)
+    : mesh_(mesh),
+      columns_(columns),
+      points_(points),
+      sight_(sight),
+      check_(check),
+      mover_(mesh, limits, lowerEnds(columns, faulty), &monitor) {
+  searched_.assign(columns.count(), 0);
+  changed_.assign(mesh.points.size(), 0);
+}
+
+std::vector<Id> LayerSearch::lowerEnds(const LayerColumns& columns, const std::vector<Id>& faulty) {
+  std::vector<Id> ends;
+  for (Id c : faulty) ends.insert(ends.end(), columns.ring(c).begin(), columns.ring(c).end());
+  sortUnique(ends);
+  return ends;
+}
+
+std::vector<Id> LayerSearch::mend(const std::vector<Id>& faulty) {
+  std::vector<Id> todo;
+  for (Id c : faulty) {
+    const Span<Id> ring = columns_.ring(c);
+    const bool mayMove = std::all_of(ring.begin(), ring.end(), [&](Id b) { return mover_.isMovable(b); });
+    if (!mayMove || searched_[c]) continue;
+    searched_[c] = 1;
+    todo.push_back(c);
+  }
+  Csr<Id> rings;
+  for (Id c : todo) rings.push(columns_.ring(c));
+  mover_.forEach(mover_.colourRows(rings), [&](Id i) { mendColumn(todo[i]); });
+  std::vector<Id> around;
+  for (Id b : rings.values) {
+    if (changed_[b]) around.insert(around.end(), columns_.columnsOf(b).begin(), columns_.columnsOf(b).end());
+    changed_[b] = 0;
+  }
+  sortUnique(around);
+  return around;
+}
+
+/// Edges that see their wall worst first, until the column has no fault.
+void LayerSearch::mendColumn(Id column) {
+  const std::vector<Id> own(1, column);
+  std::vector<Id> ring(columns_.ring(column).begin(), columns_.ring(column).end());
+  const auto cosine = [&](Id b) {
+    const Id p = columns_.wallPoint(b);
+    return sight_.cosine(p, mesh_.points[b] - mesh_.points[p]);
+  };
+  std::stable_sort(ring.begin(), ring.end(), [&](Id a, Id b) { return cosine(a) < cosine(b); });
+  for (Id b : ring) {
+    if (faults(own) == 0) return;
+    const std::vector<Id> around(columns_.columnsOf(b).begin(), columns_.columnsOf(b).end());
+    const int left = tryCourses(b, around, faults(around));
+    if (left > 0 && movesEnds_) tryPlaces(b, around, left);
+  }
+}
+
+int LayerSearch::tryCourses(Id lower, const std::vector<Id>& around, int faultsNow) {
+  const int old = points_.course(lower);
+  int best = old, fewest = faultsNow;
+  for (int course = 0; course < LayerPoints::kCourses && fewest > 0; ++course) {
+    if (course == old || !points_.setCourse(lower, course)) continue;
+    const int n = faults(around);
+    if (n >= fewest) continue;
+    fewest = n;
+    best = course;
+  }
+  points_.setCourse(lower, best);
+  faults(around);  // brings the measures up to date
+  if (best != old) changed_[lower] = 1;
+  return fewest;
+}
+
+int LayerSearch::tryPlaces(Id lower, const std::vector<Id>& around, int faultsNow) {
+  const Vec3 old = mesh_.points[lower];
+  const Id wall = columns_.wallPoint(lower);
+  Vec3 best = old;
+  int fewest = faultsNow;
+  for (const Vec3& place : places(mesh_.points[wall], old, sight_.best(wall))) {
+    if (fewest == 0) break;
+    if (!moveTo(lower, place)) continue;
+    const int n = faults(around);
+    if (n < fewest) {
+      fewest = n;
+      best = mesh_.points[lower];
+    }
+    moveTo(lower, old);
+  }
+  moveTo(lower, best);
+  faults(around);
+  if (mesh_.points[lower] != old) changed_[lower] = 1;
+  return fewest;
+}
+
+bool LayerSearch::moveTo(Id lower, const Vec3& to) {
+  if (!mover_.move(lower, to)) return false;
+  points_.follow(lower);
+  for (Id c : mover_.cellsOf(lower))
+    if (columns_.columnOf(c) == kNone) check_.measureBeside(c);
+  return true;
+}
+
+}  // namespace pm

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Looks for a valid shape of layers where the plain one breaks a limit (thesis 4.8: other configurations are
+// searched before a split is given up).
+//
+// For a column with a fault, each of its prism edges may take another course (see LayerPoints), and its lower
+// end another place, within the limits of the mesh below. What leaves the fewest faults in the cells around
+// the edge is kept. Wall points do not move. Columns that touch nothing in common are searched in parallel;
+// the result is the same for any number of threads.
+#pragma once
+
+#include "LayerCheck.h"
+#include "LayerPoints.h"
+#include "NodeMover.h"
+
+namespace pm {
+
+class LayerSearch {
+ public:
+  /// faulty: the columns whose edges may move, now or in later calls. All arguments must outlive this.
+  LayerSearch(PolyMesh& mesh, LayerColumns& columns, LayerPoints& points, const WallSight& sight,
+              LayerCheck& check, const QualityLimits& limits, const std::vector<Id>& faulty,
+              const Monitor& monitor);
+
+  /// Whether lower ends of edges may move; they may at first.
+  void moveLowerEnds(bool may) { movesEnds_ = may; }
+  /// Searches around columns that have faults, each once: with fewer layers it seldom ends better. Returns
+  /// the columns around which something has changed, ascending.
+  std::vector<Id> mend(const std::vector<Id>& faulty);
+
+ private:
+  static std::vector<Id> lowerEnds(const LayerColumns& columns, const std::vector<Id>& faulty);
+  void mendColumn(Id column);
+  int tryCourses(Id lower, const std::vector<Id>& around, int faults);
+  int tryPlaces(Id lower, const std::vector<Id>& around, int faults);
+  bool moveTo(Id lower, const Vec3& to);
+  int faults(const std::vector<Id>& columns) { return check_.countFaults(columns); }
+
+  PolyMesh& mesh_;
+  LayerColumns& columns_;
+  LayerPoints& points_;
+  const WallSight& sight_;
+  LayerCheck& check_;
+  NodeMover mover_;
+  bool movesEnds_ = true;
+  std::vector<std::uint8_t> searched_;  // #columns
+  std::vector<std::uint8_t> changed_;   // #P lower points
+};
+
+}  // namespace pm
