@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "FeaturePacking.h"
+#include "LayerPacking.h"
 #include "LeakPacking.h"
 #include "MeshPacking.h"
 #include "Pipeline.h"
@@ -28,7 +29,7 @@ vtkProjectionMesh::vtkProjectionMesh() : vtkFoamLimitsStage(3, 0), Report(std::m
   const pm::PipelineOptions defaults;
   this->CloseHoles = static_cast<int>(defaults.closeHoles);
   this->StopAfter = static_cast<int>(defaults.stopAfter);
-  this->SetNumberOfOutputPorts(UNRESOLVED + 1);
+  this->SetNumberOfOutputPorts(LAYERS + 1);
 }
 
 vtkProjectionMesh::~vtkProjectionMesh() = default;
@@ -70,6 +71,9 @@ void vtkProjectionMesh::Run(vtkInformationVector** inputs, vtkUnstructuredGrid* 
   pm::packMesh(result, mesh);
   pm::packRegions(this->Report->stages.front, mesh);
   pm::packBoundary(result, boundary);
+  const pm::BoundaryRefineReport& layers = this->Report->stages.refine;
+  pm::packLayers(layers, boundary);
+  pm::packLayerTable(layers, vtkTable::SafeDownCast(this->GetOutputDataObject(LAYERS)));
   const pm::PaintFrontReport& front = this->Report->stages.front;
   pm::packRegionTable(front, result,
                       vtkTable::SafeDownCast(this->GetOutputDataObject(vtkPaintFront::REGIONS)));
@@ -87,7 +91,8 @@ void vtkProjectionMesh::ShowFailure() {
 }
 
 int vtkProjectionMesh::FillOutputPortInformation(int port, vtkInformation* info) {
-  if (port != vtkPaintFront::REGIONS) return this->Superclass::FillOutputPortInformation(port, info);
+  if (port != vtkPaintFront::REGIONS && port != LAYERS)
+    return this->Superclass::FillOutputPortInformation(port, info);
   info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkTable");
   return 1;
 }

@@ -151,6 +151,18 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkProjectionMesh : public vtkFoamLimitsSta
   pmStageProperty(Refine, Layers, int);
   pmStageProperty(Refine, ExpansionRatio, double);
   pmStageProperty(Refine, FirstHeight, double);
+  pmStageProperty(Refine, TotalThickness, double);
+  pmStageProperty(Refine, YPlus, double);
+  pmStageProperty(Refine, FlowSpeed, double);
+  pmStageProperty(Refine, FlowLength, double);
+  pmStageProperty(Refine, KinematicViscosity, double);
+  pmStageProperty(Refine, MakeRoom, bool);
+  void AddPatchLayer(const char* patches, int layers, double expansionRatio, double firstHeight,
+                     double totalThickness, double yPlus) {
+    this->Refine->AddPatchLayer(patches, layers, expansionRatio, firstHeight, totalThickness, yPlus);
+  }
+  void ClearPatchLayers() { this->Refine->ClearPatchLayers(); }
+  int GetNumberOfPatchLayers() const { return this->Refine->GetNumberOfPatchLayers(); }
   ///@}
 
   enum CloseHolesType { NOT = 0, COARSE_TO_FINE = 1, OFFSET = 2 };
@@ -180,8 +192,9 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkProjectionMesh : public vtkFoamLimitsSta
   vtkIdType GetFacesWithLayers(int layers) const;
   ///@}
 
-  /** Output ports: mesh, boundary, those of vtkPaintFront, and vtkResolveFeatures' unresolved features. */
-  enum PortType { UNRESOLVED = vtkPaintFront::LEAKS + 1 };
+  /** Output ports: mesh, boundary, those of vtkPaintFront, vtkResolveFeatures' unresolved features, and
+   * vtkBoundaryRefine's table of layers. */
+  enum PortType { UNRESOLVED = vtkPaintFront::LEAKS + 1, LAYERS };
 
  protected:
   vtkProjectionMesh();

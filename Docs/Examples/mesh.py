@@ -65,6 +65,13 @@ def parser():
     p.add_argument("--layers", type=int, metavar="N", help="boundary layers (default: 3; 0: keep the one prism)")
     p.add_argument("--first-height", type=float, metavar="H", help="height of the cell at the wall")
     p.add_argument("--expansion", type=float, metavar="R", help="height ratio of neighbouring layers (default: 1.2)")
+    p.add_argument("--thickness", type=float, metavar="T", help="height of all layers; with --first-height, the ratio follows")
+    p.add_argument("--y-plus", type=float, metavar="Y", help="y+ of the first cell's centre, for the flow given by --flow")
+    p.add_argument("--flow", type=float, nargs=3, metavar=("SPEED", "LENGTH", "VISCOSITY"),
+                   help="speed along the wall, length of the wall along it, kinematic viscosity")
+    p.add_argument("--patch-layers", nargs=2, action="append", default=[], metavar=("PATCH", "N"),
+                   help="N layers (0: none) on patches of this name, in which * stands for any characters; heights as on "
+                   "the others; may be repeated")
     p.add_argument("--also", choices=("msh", "stl"), action="append", default=[],
                    help="write mesh.msh for Fluent, or boundary.stl with a solid for each patch, too; may be repeated")
     p.add_argument("--threads", type=int, default=0, metavar="N", help="threads to use (default: all)")
@@ -84,12 +91,17 @@ def check_options(options):
     """What can be said before the geometry is read."""
     numbers = {"--feature-size": options.feature_size, "--base-size": options.base_size,
                "--first-height": options.first_height, "--expansion": options.expansion,
-               "--far-box": options.far_box, "--far-sphere": options.far_sphere}
+               "--far-box": options.far_box, "--far-sphere": options.far_sphere, "--thickness": options.thickness,
+               "--y-plus": options.y_plus}
+    numbers.update({"Each number of --flow": value for value in options.flow or [] if not value > 0})
     for name, value in numbers.items():
         if value is not None and not (math.isfinite(value) and value > 0):
             raise UserError(f"{name} must be a number larger than zero, not {value:g}.")
     if options.layers is not None and options.layers < 0:
         raise UserError(f"--layers must not be negative, but it is {options.layers}.")
+    for patch in options.patch_layers:
+        if not patch[1].isdigit():
+            raise UserError(f"--patch-layers takes a name and a number of layers, but got {patch[0]} {patch[1]}.")
     if options.threads < 0:
         raise UserError(f"--threads must not be negative, but it is {options.threads}.")
     for box in options.refine_box + ([options.domain] if options.domain else []):
@@ -238,6 +250,26 @@ def meshes_outside(options):
     return not options.point and (options.region or ("outside" if options.domain else "inside")) == "outside"
 
 
+def layers_filter(pm, options):
+    refine = pm.vtkBoundaryRefine()
+    if options.layers:
+        refine.SetLayers(options.layers)
+    if options.expansion:
+        refine.SetExpansionRatio(options.expansion)
+    first, thickness, y_plus = options.first_height or 0, options.thickness or 0, options.y_plus or 0
+    refine.SetFirstHeight(first)
+    refine.SetTotalThickness(thickness)
+    refine.SetYPlus(y_plus)
+    if options.flow:
+        refine.SetFlowSpeed(options.flow[0])
+        refine.SetFlowLength(options.flow[1])
+        refine.SetKinematicViscosity(options.flow[2])
+    for patch, layers in options.patch_layers:
+        given = (first, thickness, y_plus) if int(layers) > 0 else (0, 0, 0)
+        refine.AddPatchLayer(patch, int(layers), refine.GetExpansionRatio(), *given)
+    return refine
+
+
 def make_filters(pm, options):
     """The stages' filters in order, with the user's options."""
     octree, front = pm.vtkOctreeDecompose(), pm.vtkPaintFront()
@@ -250,14 +282,7 @@ def make_filters(pm, options):
         front.SetRegionToOutside()
     for point in options.keep_out or []:
         front.AddKeepOutPoint(*point)
-    refine = pm.vtkBoundaryRefine()
-    if options.layers:
-        refine.SetLayers(options.layers)
-    if options.first_height:
-        refine.SetFirstHeight(options.first_height)
-    if options.expansion:
-        refine.SetExpansionRatio(options.expansion)
-    filters = [octree, front, pm.vtkDummyLayer(), pm.vtkProject(), pm.vtkResolveFeatures(), refine]
+    filters = [octree, front, pm.vtkDummyLayer(), pm.vtkProject(), pm.vtkResolveFeatures(), layers_filter(pm, options)]
     for stage in filters:
         stage.SetThreads(options.threads)
         stage.SetPatchArray("PatchId")  # the reader's: solids and groups, in each of several files

@@ -61,9 +61,31 @@ def features(stage):
 
 def layers(stage):
     pairs = [("wall faces", f"{stage.GetWallFaces():,}")]
-    for n in range(1, stage.GetLayers() + 1):
-        pairs.append((f"  with {n} layer{'s' if n > 1 else ''}", share(stage.GetFacesWithLayers(n), stage.GetWallFaces())))
+    n = 1
+    while n <= stage.GetLayers() or stage.GetFacesWithLayers(n):
+        if stage.GetFacesWithLayers(n) or n <= stage.GetLayers():
+            pairs.append((f"  with {n} layer{'s' if n > 1 else ''}", share(stage.GetFacesWithLayers(n), stage.GetWallFaces())))
+        n += 1
     return pairs
+
+
+def layer_table(table):
+    """One line a patch; and why faces have fewer layers than were wanted. Covered: a layer at the wall."""
+    columns = [table.GetColumn(i) for i in range(table.GetNumberOfColumns())]
+    value = {c.GetName(): c for c in columns}
+    first_reason = [c.GetName() for c in columns].index("Thickness") + 1
+    print("\nLayers by patch (shares of area; lengths)\n" + 29 * " " + "   faces wanted  mean   all of covered | first height "
+          "wanted      mean     least  in 20% | thickness")
+    for row in range(table.GetNumberOfRows()):
+        number = {name: column.GetValue(row) for name, column in value.items()}
+        print(f"  {number['Patch'][:27]:27s} {number['Faces']:8,d} {number['LayersWanted']:6d} {number['Layers']:5.2f} "
+              f"{number['AllLayers']:7.1f}% {number['Covered']:6.1f}% | {number['FirstHeightWanted']:19.3g} "
+              f"{number['FirstHeightMean']:9.3g} {number['FirstHeightLeast']:9.3g} {number['AsWanted']:6.1f}% | "
+              f"{number['Thickness']:9.3g}")
+    last = table.GetNumberOfRows() - 1
+    reasons = [(c.GetName(), f"{c.GetValue(last):,} faces") for c in columns[first_reason:]] if last >= 0 else []
+    if reasons:
+        rows("Fewer layers, because", reasons)
 
 
 def print_report(filters, last, validity, measured):
@@ -79,6 +101,7 @@ def print_report(filters, last, validity, measured):
         rows("Features", features(filters[4]))
     if len(filters) > 5:
         rows("Layers", layers(filters[5]))
+        layer_table(filters[5].GetOutputDataObject(filters[5].LAYERS))
     print("\nCost" + 34 * " " + f"{'seconds':>9s} {'peak MB':>9s}")
     for stage, seconds, megabytes in measured:
         print(f"  {stage:34s} {seconds:11.2f} {megabytes:9.0f}")

@@ -51,20 +51,20 @@ class Summing {
     sum_.layers += area * faces.layers[i];
     ++sum_.byReason[static_cast<int>(faces.reason[i])];
     sum_.thickness += area * faces.thickness[i];
+    sum_.wantedFirst += area * faces.wantedFirst[i];
     if (faces.layers[i] >= wantedLayers) sum_.allLayers += area;
     if (faces.layers[i] < std::min<Id>(2, wantedLayers)) return;
     sum_.covered += area;
     const double got = faces.firstHeight[i], wanted = faces.wantedFirst[i];
     if (std::abs(got - wanted) <= kWithin * wanted) sum_.asWanted += area;
     sum_.meanFirst += area * got;
-    sum_.wantedFirst += area * wanted;
     sum_.minFirst = sum_.minFirst == 0 ? got : std::min(sum_.minFirst, got);
   }
   PatchCoverage result() const {
     PatchCoverage mean = sum_;
     const auto divide = [](double& value, double by) { value = by > 0 ? value / by : 0; };
-    for (double* value : {&mean.asWanted, &mean.meanFirst, &mean.wantedFirst}) divide(*value, sum_.covered);
-    for (double* value : {&mean.layers, &mean.allLayers, &mean.covered, &mean.thickness})
+    for (double* value : {&mean.asWanted, &mean.meanFirst}) divide(*value, sum_.covered);
+    for (double* value : {&mean.layers, &mean.allLayers, &mean.covered, &mean.wantedFirst, &mean.thickness})
       divide(*value, sum_.area);
     return mean;
   }

@@ -24,12 +24,13 @@ struct PatchCoverage {
   Id faces = 0;
   double area = 0;
   Id wantedLayers = 1;
-  double layers = 0;     ///< on average
-  double allLayers = 0;  ///< share with as many as wanted
-  double covered = 0;    ///< share with a layer at the wall: two or more where that is wanted
-  double asWanted = 0;   ///< share of what is covered with a first height within 20% of the wanted one
-  double wantedFirst = 0, meanFirst = 0, minFirst = 0;
-  double thickness = 0;  ///< on average
+  double layers = 0;       ///< on average
+  double allLayers = 0;    ///< share with as many as wanted
+  double covered = 0;      ///< share with a layer at the wall: two or more where that is wanted
+  double asWanted = 0;     ///< share of what is covered with a first height within 20% of the wanted one
+  double wantedFirst = 0;  ///< first height, on average
+  double meanFirst = 0, minFirst = 0;  ///< of what is covered
+  double thickness = 0;                ///< on average
   std::array<Id, kLayerReasons> byReason{};
 };
 

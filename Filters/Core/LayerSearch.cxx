@@ -6,6 +6,8 @@
 namespace pm {
 namespace {
 
+constexpr int kSearches = 2;  // for one column
+
 void sortUnique(std::vector<Id>& ids) {
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
@@ -37,7 +39,7 @@ LayerSearch::LayerSearch(PolyMesh& mesh, LayerColumns& columns, LayerPoints& poi
       sight_(sight),
       check_(check),
       mover_(mesh, limits, lowerEnds(columns, faulty), &monitor) {
-  searched_.assign(columns.count(), 0);
+  searches_.assign(columns.count(), 0);
   changed_.assign(mesh.points.size(), 0);
 }
 
@@ -53,8 +55,8 @@ std::vector<Id> LayerSearch::mend(const std::vector<Id>& faulty) {
   for (Id c : faulty) {
     const Span<Id> ring = columns_.ring(c);
     const bool mayMove = std::all_of(ring.begin(), ring.end(), [&](Id b) { return mover_.isMovable(b); });
-    if (!mayMove || searched_[c]) continue;
-    searched_[c] = 1;
+    if (!mayMove || searches_[c] == kSearches) continue;
+    ++searches_[c];
     todo.push_back(c);
   }
   Csr<Id> rings;

@@ -23,7 +23,7 @@ class LayerSearch {
 
   /// Whether lower ends of edges may move; they may at first.
   void moveLowerEnds(bool may) { movesEnds_ = may; }
-  /// Searches around columns that have faults, each once: with fewer layers it seldom ends better. Returns
+  /// Searches around columns that have faults, each twice at most: more seldom ends better. Returns
   /// the columns around which something has changed, ascending.
   std::vector<Id> mend(const std::vector<Id>& faulty);
 
@@ -42,7 +42,7 @@ class LayerSearch {
   LayerCheck& check_;
   NodeMover mover_;
   bool movesEnds_ = true;
-  std::vector<std::uint8_t> searched_;  // #columns
+  std::vector<std::uint8_t> searches_;  // #columns
   std::vector<std::uint8_t> changed_;   // #P lower points
 };
 

@@ -44,9 +44,10 @@ WallSight::WallSight(const PolyMesh& mesh) {
 }
 
 double WallSight::cosine(Id wallPoint, const Vec3& direction) const {
+  const Vec3 unit = direction.normalized();
   double least = 1;
-  for (const Vec3& n : normals_[wallPoint]) least = std::min(least, n.dot(direction));
-  return least / direction.norm();
+  for (const Vec3& n : normals_[wallPoint]) least = std::min(least, n.dot(unit));
+  return least;
 }
 
 /// Turns the mean normal towards the face seen worst, less with each step.

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Courses of prism edges, pinched edges, and the direction that sees all wall faces.
+#include "LayerPoints.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "BoundaryRefine.h"
+#include "LayerSplit.h"
+#include "TestMeshes.h"
+#include "WallSight.h"
+
+namespace {
+
+using namespace pm;
+using namespace pm::testing;
+
+TEST(WallSight, FlatEdgeAndCorner) {
+  const PolyMesh cube = layeredVoxels(cubeInBox());
+  const WallSight sight(cube);
+  int corners = 0;
+  for (Id p = 0; p < static_cast<Id>(cube.points.size()); ++p) {
+    if (cube.base[p] == kNone) continue;
+    ++corners;
+    EXPECT_NEAR(sight.bestCosine(p), std::sqrt(1.0 / 3), 1e-3);
+    EXPECT_NEAR(sight.best(p).norm(), 1, 1e-12);
+    EXPECT_NEAR(sight.cosine(p, 5 * sight.best(p)), sight.bestCosine(p), 1e-12);
+  }
+  EXPECT_EQ(corners, 8);
+}
+
+TEST(WallSight, KeepsToDomainSides) {
+  VoxelOptions o;
+  o.size = {3, 3, 2};
+  o.wallSide = {false, false, false, false, false, true};
+  o.deform = [](const Vec3& p) { return Vec3(p.x(), p.y(), p.z() + 0.1 * p.x()); };
+  const PolyMesh mesh = layeredVoxels(o);
+  const WallSight sight(mesh);
+  int onSide = 0;
+  for (Id p = 0; p < static_cast<Id>(mesh.points.size()); ++p) {
+    if (mesh.base[p] == kNone) continue;
+    for (int a = 0; a < 3; ++a)
+      if (mesh.fixed[p] >> a & 1) {
+        EXPECT_EQ(sight.best(p)[a], 0);
+        ++onSide;
+      }
+  }
+  EXPECT_EQ(onSide, 16);
+}
+
+/// All edges of a cube's layers at one course, split.
+PolyMesh atCourse(const PolyMesh& mesh, int course, Id onlyEvery) {
+  LayerColumns columns(mesh);
+  const WallSight sight(mesh);
+  std::vector<EdgeHeights> heights(mesh.points.size(), {0.05, 1.2});
+  std::vector<Id> all;
+  for (Id c = 0; c < columns.count(); ++c) {
+    columns.want(c, 3);
+    all.push_back(c);
+  }
+  columns.updateEdges(all);
+  LayerPoints points(mesh, columns, sight, heights);
+  Id n = 0;
+  for (Id b = 0; b < static_cast<Id>(mesh.points.size()); ++b)
+    if (columns.wallPoint(b) >= 0 && n++ % onlyEvery == 0) EXPECT_TRUE(points.setCourse(b, course));
+  return splitLayers(mesh, columns, points.all());
+}
+
+TEST(LayerPoints, EveryCourseKeepsTopologyAndVolume) {
+  VoxelOptions o;
+  o.size = {5, 4, 2};
+  o.wallSide = {false, false, false, false, false, true};
+  for (const PolyMesh& mesh : {layeredVoxels(cubeInBox()), layeredVoxels(o)}) {
+    const double volume = summarise(mesh, measure(mesh), {}).totalVolume;
+    for (int course = 0; course < LayerPoints::kCourses; ++course)
+      for (Id every : {1, 2, 3}) {
+        const PolyMesh split = atCourse(mesh, course, every);
+        // All edges pinched leaves caps on the wall itself: topology alone means nothing there.
+        if (course == LayerPoints::kCourses - 1 && every == 1) continue;
+        EXPECT_EQ(checkTopology(split), "") << "course " << course << " every " << every;
+        EXPECT_NEAR(summarise(split, measure(split), {}).totalVolume / volume, 1, 1e-12);
+      }
+  }
+}
+
+TEST(LayerPoints, PinchedEdgesHaveNoPoints) {
+  const PolyMesh mesh = layeredVoxels(cubeInBox());
+  const Id straight = static_cast<Id>(atCourse(mesh, 0, 1).points.size());
+  EXPECT_EQ(straight, static_cast<Id>(mesh.points.size()) + 8 * 2);
+  EXPECT_EQ(static_cast<Id>(atCourse(mesh, LayerPoints::kCourses - 1, 2).points.size()), straight - 4 * 2);
+}
+
+}  // namespace
