@@ -49,7 +49,7 @@ std::vector<Id> grade(LayerColumns& columns, std::vector<Id> changed) {
     const Id most = columns.layers(changed[i]) + 1;
     columns.forEachBeside(changed[i], [&](Id other) {
       if (columns.layers(other) <= most) return;
-      columns.lower(other, most, LayerReason::NeighbourLayers);
+      columns.setLayers(other, most, LayerReason::NeighbourLayers);
       changed.push_back(other);
     });
   }
@@ -94,8 +94,8 @@ void planLayers(const PolyMesh& mesh, LayerColumns& columns, const LayerDemands&
       if (demand.first > 0 || !(length > 0))
         layers = std::min(layers, fittingLayers(length, heights[b], layers));
     }
-    if (layers < demand.layers) columns.lower(c, layers, LayerReason::NoRoom);
-    if (demand.layers == 1 && demands.mostLayers() > 1) columns.lower(c, 1, LayerReason::NotWanted);
+    if (layers < demand.layers) columns.setLayers(c, layers, LayerReason::NoRoom);
+    if (demand.layers == 1 && demands.mostLayers() > 1) columns.setLayers(c, 1, LayerReason::NotWanted);
   }
   const std::vector<Id> all = allColumns(columns);
   grade(columns, all);
@@ -123,12 +123,52 @@ std::vector<Id> columnsOf(const std::vector<LayerCheck::Fault>& faults) {
   return columns;
 }
 
+/// What a column was to have before any limit was looked at.
+struct PlannedLayers {
+  Id layers;
+  LayerReason reason;
+};
+
+/// Gives columns layers back that they lost for a neighbour that has lost some since, one by one, as long as
+/// nothing breaks a limit (the iterative splitting of thesis 4.8).
+void raiseAgain(LayerColumns& columns, LayerPoints& points, LayerCheck& check,
+                const std::vector<PlannedLayers>& planned, Monitor& monitor) {
+  std::vector<Id> around;
+  const auto faultsWith = [&](Id c, Id layers) {
+    columns.setLayers(c, layers, columns.reason(c));
+    columns.updateEdges({c});
+    for (Id b : columns.ring(c)) points.follow(b);
+    return check.countFaults(around);
+  };
+  std::vector<Id> todo = allColumns(columns);  // later those around which something has changed
+  while (!todo.empty()) {
+    monitor.check(0.7, kChoosing);
+    std::vector<Id> raised;
+    for (Id c : todo) {
+      const Id layers = columns.layers(c);
+      bool graded = layers < planned[c].layers;
+      columns.forEachBeside(c, [&](Id other) { graded = graded && columns.layers(other) >= layers; });
+      if (!graded) continue;
+      columns.around(c, around);
+      if (faultsWith(c, layers + 1) > 0) {
+        faultsWith(c, layers);
+        continue;
+      }
+      raised.push_back(c);
+      if (layers + 1 == planned[c].layers) columns.setLayers(c, layers + 1, planned[c].reason);
+    }
+    todo = touched(columns, touched(columns, raised));
+  }
+}
+
 /// Where a cell or face would break a limit, looks for another shape, and takes layers away when there is
-/// none, until no limit is broken.
+/// none, until no limit is broken; in the end gives back what can be.
 void lowerUntilValid(PolyMesh& mesh, LayerColumns& columns, LayerPoints& points, const WallSight& sight,
                      const BoundaryRefineOptions& options, Monitor& monitor) {
   LayerCheck check(mesh, columns, points.all(), options.limits);
   std::vector<Id> changed = allColumns(columns);
+  std::vector<PlannedLayers> planned;
+  for (Id c : changed) planned.push_back({columns.layers(c), columns.reason(c)});
   const double all = static_cast<double>(changed.size()) + 1;
   std::vector<LayerCheck::Fault> faults = check.columnsToLower(changed);
   LayerSearch search(mesh, columns, points, sight, check, options.limits, columnsOf(faults), monitor);
@@ -140,12 +180,13 @@ void lowerUntilValid(PolyMesh& mesh, LayerColumns& columns, LayerPoints& points,
     std::sort(changed.begin(), changed.end());
     changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
     for (const LayerCheck::Fault& fault : faults = check.columnsToLower(touched(columns, changed)))
-      columns.lower(fault.column, columns.layers(fault.column) - 1, fault.reason);
+      columns.setLayers(fault.column, columns.layers(fault.column) - 1, fault.reason);
     const std::vector<Id> graded = grade(columns, columnsOf(faults));
     columns.updateEdges(graded);
     changed = touched(columns, graded);
     faults = check.columnsToLower(changed);
   }
+  raiseAgain(columns, points, check, planned, monitor);
 }
 
 }  // namespace

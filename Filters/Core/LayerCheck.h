@@ -26,9 +26,8 @@ bool cellHolds(const CellMeasures& cell, const QualityLimits& limits, double uni
 
 class LayerCheck {
  public:
-  /// points: the mesh's and, after them, the points on the edges. Columns may only lose layers while the
-  /// check lives. The limits hold but for minVolume, and eta of side faces: both are small in layers on
-  /// purpose.
+  /// points: the mesh's and, after them, the points on the edges. Columns may not get more layers than they
+  /// have now. The limits hold but for minVolume, and eta of side faces: both are small in layers on purpose.
   LayerCheck(const PolyMesh& mesh, const LayerColumns& columns, const std::vector<Vec3>& points,
              const QualityLimits& limits);
 

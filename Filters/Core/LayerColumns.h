@@ -48,14 +48,14 @@ class LayerColumns {
     layers_[column] = layers;
     reason_[column] = LayerReason::None;
   }
-  void lower(Id column, Id layers, LayerReason reason) {
+  void setLayers(Id column, Id layers, LayerReason reason) {
     layers_[column] = layers;
     reason_[column] = reason;
   }
-  /// Why a column has fewer layers than it was to have: of the last one it lost.
+  /// Why a column has fewer layers than it was to have.
   LayerReason reason(Id column) const { return reason_[column]; }
-  /// Layers of a prism edge: the most of any column around it. Call after want and lower, with all changed
-  /// columns.
+  /// Layers of a prism edge: the most of any column around it. Call after want and setLayers, with all
+  /// changed columns.
   void updateEdges(const std::vector<Id>& changedColumns);
   /// Layers end in the wall point of a pinched edge: none of their points are on it.
   void pinch(Id lower, bool pinched = true);
