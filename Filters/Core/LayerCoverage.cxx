@@ -104,7 +104,7 @@ BoundaryRefineReport coverage(const PolyMesh& refined, const LayerColumns& colum
     faces.thickness[i] = area > 0 && column != kNone ? ofColumn[column] / area : faces.firstHeight[i];
     faces.wantedFirst[i] = demand.first > 0
                                ? demand.first
-                               : faces.thickness[i] / EdgeHeights{1, demand.expansion}.sum(demand.layers);
+                               : faces.thickness[i] / EdgeHeights{1, demand.expansion, 0}.sum(demand.layers);
     ++report.wallFaces;
     ++report.facesByLayers[faces.layers[i] - 1];
     for (Summing* sum : {&sums[refined.patch[i]], &all}) sum->add(faces, i, demand.layers, areas[i]);

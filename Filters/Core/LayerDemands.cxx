@@ -35,7 +35,7 @@ bool fits(const std::string& pattern, const std::string& name) {
 }
 
 /// Height of so many layers when the first is 1.
-double unitSum(int layers, double expansion) { return EdgeHeights{1, expansion}.sum(layers); }
+double unitSum(int layers, double expansion) { return EdgeHeights{1, expansion, 0}.sum(layers); }
 
 void checkLength(double value, const char* what, const std::string& where) {
   if (value >= 0 && std::isfinite(value)) return;
@@ -180,10 +180,11 @@ std::vector<EdgeHeights> edgeHeights(const PolyMesh& mesh, const LayerColumns& c
     const LayerDemand& demand = demands.ofColumn(mesh, columns, c);
     if (demand.layers == 1) continue;
     for (Id b : columns.ring(c)) {
+      const double length = alongEdge(mesh, columns, b).norm();
       const double first =
-          demand.first > 0 ? demand.first * slants[b]
-                           : alongEdge(mesh, columns, b).norm() / unitSum(demand.layers, demand.expansion);
-      if (heights[b].first == 0 || first < heights[b].first) heights[b] = {first, demand.expansion};
+          demand.first > 0 ? demand.first * slants[b] : length / unitSum(demand.layers, demand.expansion);
+      if (heights[b].first > 0 && heights[b].first <= first) continue;
+      heights[b] = {first, demand.expansion, demand.first > 0 ? 0 : length};
     }
   }
   return heights;

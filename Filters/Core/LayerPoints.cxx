@@ -59,8 +59,9 @@ void LayerPoints::follow(Id lower) {
   const Vec3 edge = mesh_.points[lower] - mesh_.points[wall];
   const double length = edge.norm();
   const Course course = kCourseList[course_[lower]];
+  const double whole = heights_[lower].share > 0 ? heights_[lower].share : length;
   for (Id i = 0; i < inner; ++i) {
-    const double part = course.scale * heights_[lower].sum(i + 1) / length;
+    const double part = course.scale * heights_[lower].sum(i + 1) / whole;
     const double bend = course.bend * (1 - part);
     all_[columns_.firstPoint(lower) + i] =
         mesh_.points[wall] + part * (bend * length * sight_.best(wall) + (1 - bend) * edge);

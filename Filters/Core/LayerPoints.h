@@ -16,6 +16,7 @@ namespace pm {
 struct EdgeHeights {
   double first = 0;      ///< of the layer at the wall
   double expansion = 1;  ///< of a layer over that before it
+  double share = 0;      ///< length of the edge of which first is a share; 0 when it does not depend on it
   /// From the wall to the end of `layers` layers.
   double sum(Id layers) const;
 };

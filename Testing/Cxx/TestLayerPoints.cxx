@@ -53,7 +53,7 @@ TEST(WallSight, KeepsToDomainSides) {
 PolyMesh atCourse(const PolyMesh& mesh, int course, Id onlyEvery) {
   LayerColumns columns(mesh);
   const WallSight sight(mesh);
-  std::vector<EdgeHeights> heights(mesh.points.size(), {0.05, 1.2});
+  std::vector<EdgeHeights> heights(mesh.points.size(), {0.05, 1.2, 0});
   std::vector<Id> all;
   for (Id c = 0; c < columns.count(); ++c) {
     columns.want(c, 3);
@@ -81,6 +81,31 @@ TEST(LayerPoints, EveryCourseKeepsTopologyAndVolume) {
         EXPECT_EQ(checkTopology(split), "") << "course " << course << " every " << every;
         EXPECT_NEAR(summarise(split, measure(split), {}).totalVolume / volume, 1, 1e-12);
       }
+  }
+}
+
+TEST(LayerPoints, SharesOfAnEdgeFollowItsLength) {
+  PolyMesh mesh = layeredVoxels(cubeInBox());
+  LayerColumns columns(mesh);
+  const WallSight sight(mesh);
+  std::vector<Id> all;
+  for (Id c = 0; c < columns.count(); ++c) {
+    columns.want(c, 2);
+    all.push_back(c);
+  }
+  columns.updateEdges(all);
+  for (const bool shares : {false, true}) {
+    Id lower = 0;
+    while (columns.wallPoint(lower) < 0) ++lower;
+    const Id wall = columns.wallPoint(lower);
+    const Vec3 edge = mesh.points[lower] - mesh.points[wall];
+    const std::vector<EdgeHeights> heights(mesh.points.size(), {0.1, 1.2, shares ? edge.norm() : 0});
+    LayerPoints points(mesh, columns, sight, heights);
+    mesh.points[lower] = mesh.points[wall] + 2 * edge;
+    points.follow(lower);
+    const Vec3 first = points.all()[columns.firstPoint(lower)] - mesh.points[wall];
+    EXPECT_NEAR(first.norm(), shares ? 0.2 : 0.1, 1e-12);
+    mesh.points[lower] = mesh.points[wall] + edge;
   }
 }
 
