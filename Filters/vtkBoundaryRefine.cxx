@@ -24,6 +24,7 @@ vtkBoundaryRefine::vtkBoundaryRefine()
   this->FlowSpeed = defaults.flow.speed;
   this->FlowLength = defaults.flow.length;
   this->KinematicViscosity = defaults.flow.viscosity;
+  this->EvenGrowth = defaults.end == pm::LayerEnd::EvenGrowth;
   this->MakeRoom = defaults.makeRoom;
   this->SetNumberOfOutputPorts(LAYERS + 1);
 }
@@ -67,6 +68,7 @@ pm::BoundaryRefineOptions vtkBoundaryRefine::Options() const {
   options.flow.length = this->FlowLength;
   options.flow.viscosity = this->KinematicViscosity;
   options.patches = this->PatchLayers;
+  options.end = this->EvenGrowth ? pm::LayerEnd::EvenGrowth : pm::LayerEnd::LastFills;
   options.makeRoom = this->MakeRoom;
   options.limits = this->Limits();
   return options;
@@ -102,6 +104,7 @@ void vtkBoundaryRefine::PrintSelf(ostream& os, vtkIndent indent) {
   os << indent << "FlowLength: " << this->FlowLength << "\n";
   os << indent << "KinematicViscosity: " << this->KinematicViscosity << "\n";
   os << indent << "PatchLayers: " << this->GetNumberOfPatchLayers() << "\n";
+  os << indent << "EvenGrowth: " << this->EvenGrowth << "\n";
   os << indent << "MakeRoom: " << this->MakeRoom << "\n";
   os << indent << "WallFaces: " << this->GetWallFaces() << "\n";
 }

@@ -69,6 +69,13 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkBoundaryRefine : public vtkValidMeshStag
   int GetNumberOfPatchLayers() const;
   ///@}
   ///@{
+  /** Whether layers of a given first height grow faster where the prism is higher than they need; else the
+   * last takes what is left. */
+  vtkSetMacro(EvenGrowth, bool);
+  vtkGetMacro(EvenGrowth, bool);
+  vtkBooleanMacro(EvenGrowth, bool);
+  ///@}
+  ///@{
   /** Whether points inside may move to make room for layers. */
   vtkSetMacro(MakeRoom, bool);
   vtkGetMacro(MakeRoom, bool);
@@ -103,6 +110,7 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkBoundaryRefine : public vtkValidMeshStag
   double FlowSpeed;
   double FlowLength;
   double KinematicViscosity;
+  bool EvenGrowth;
   bool MakeRoom;
 
  private:

@@ -156,6 +156,7 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkProjectionMesh : public vtkFoamLimitsSta
   pmStageProperty(Refine, FlowSpeed, double);
   pmStageProperty(Refine, FlowLength, double);
   pmStageProperty(Refine, KinematicViscosity, double);
+  pmStageProperty(Refine, EvenGrowth, bool);
   pmStageProperty(Refine, MakeRoom, bool);
   void AddPatchLayer(const char* patches, int layers, double expansionRatio, double firstHeight,
                      double totalThickness, double yPlus) {

@@ -66,6 +66,7 @@ def parser():
     p.add_argument("--first-height", type=float, metavar="H", help="height of the cell at the wall")
     p.add_argument("--expansion", type=float, metavar="R", help="height ratio of neighbouring layers (default: 1.2)")
     p.add_argument("--thickness", type=float, metavar="T", help="height of all layers; with --first-height, the ratio follows")
+    p.add_argument("--even-growth", action="store_true", help="let the ratio grow where prisms are higher than the layers")
     p.add_argument("--y-plus", type=float, metavar="Y", help="y+ of the first cell's centre, for the flow given by --flow")
     p.add_argument("--flow", type=float, nargs=3, metavar=("SPEED", "LENGTH", "VISCOSITY"),
                    help="speed along the wall, length of the wall along it, kinematic viscosity")
@@ -260,6 +261,7 @@ def layers_filter(pm, options):
     refine.SetFirstHeight(first)
     refine.SetTotalThickness(thickness)
     refine.SetYPlus(y_plus)
+    refine.SetEvenGrowth(options.even_growth)
     if options.flow:
         refine.SetFlowSpeed(options.flow[0])
         refine.SetFlowLength(options.flow[1])

@@ -202,10 +202,10 @@ PolyMesh boundaryRefine(const PolyMesh& input, const BoundaryRefineOptions& opti
   const WallSight sight(mesh);
   if (splits && options.makeRoom) {
     const std::vector<double> lengths =
-        wantedLengths(mesh, columns, demands, edgeHeights(mesh, columns, demands));
+        wantedLengths(mesh, columns, demands, edgeHeights(mesh, columns, demands, LayerEnd::LastFills));
     makeLayerRoom(mesh, columns, sight, lengths, options.limits, monitor);
   }
-  const std::vector<EdgeHeights> heights = edgeHeights(mesh, columns, demands);
+  const std::vector<EdgeHeights> heights = edgeHeights(mesh, columns, demands, options.end);
   planLayers(mesh, columns, demands, heights);
   warnOfAspect(mesh, columns, heights, monitor);
   LayerPoints points(mesh, columns, sight, heights);

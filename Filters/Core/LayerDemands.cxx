@@ -64,21 +64,29 @@ void checkSpec(const LayerSpec& spec, int leastLayers, const std::string& where)
   }
 }
 
-/// The expansion with which the layers grow from the first height to the thickness, by bisection.
-double expansionBetween(const LayerSpec& spec, const std::string& where) {
-  const double wanted = spec.thickness / spec.firstHeight;
+/// The expansion with which layers of a first height 1 sum up to a height, by bisection; the nearest there
+/// is.
+double expansionFor(double height, int layers) {
   double low = kLeastExpansion, high = kMostExpansion;
-  if (spec.layers < 2 || wanted < unitSum(spec.layers, low) || wanted > unitSum(spec.layers, high)) {
-    throw InputError(fmt::format(
-        "{} layer{} cannot grow from a first height of {:g} to a thickness of {:g}{}; change one of "
-        "the three, or leave out the height or the thickness.",
-        spec.layers, spec.layers == 1 ? "" : "s", spec.firstHeight, spec.thickness, where));
-  }
-  for (int i = 0; i < 60; ++i) {
+  constexpr int kHalvings = 60;
+  for (int i = 0; i < kHalvings; ++i) {
     const double middle = 0.5 * (low + high);
-    (unitSum(spec.layers, middle) < wanted ? low : high) = middle;
+    (unitSum(layers, middle) < height ? low : high) = middle;
   }
   return low;
+}
+
+/// The expansion with which the layers grow from the first height to the thickness.
+double expansionBetween(const LayerSpec& spec, const std::string& where) {
+  const double wanted = spec.thickness / spec.firstHeight;
+  const bool possible = spec.layers > 1 && wanted >= unitSum(spec.layers, kLeastExpansion) &&
+                        wanted <= unitSum(spec.layers, kMostExpansion);
+  if (possible) return expansionFor(wanted, spec.layers);
+  throw InputError(
+      fmt::format("{} layer{} cannot grow from a first height of {:g} to a thickness of {:g}{}; change one "
+                  "of the three, or leave "
+                  "out the height or the thickness.",
+                  spec.layers, spec.layers == 1 ? "" : "s", spec.firstHeight, spec.thickness, where));
 }
 
 LayerDemand demandOf(const LayerSpec& spec, const FlowData& flow, int leastLayers, const std::string& where) {
@@ -172,7 +180,7 @@ const LayerDemand& LayerDemands::ofColumn(const PolyMesh& mesh, const LayerColum
 }
 
 std::vector<EdgeHeights> edgeHeights(const PolyMesh& mesh, const LayerColumns& columns,
-                                     const LayerDemands& demands) {
+                                     const LayerDemands& demands, LayerEnd end) {
   const std::vector<double> slants = edgeSlants(mesh, columns);
   std::vector<EdgeHeights> heights(mesh.points.size());
   for (Id c = 0; c < columns.count(); ++c) {
@@ -185,6 +193,8 @@ std::vector<EdgeHeights> edgeHeights(const PolyMesh& mesh, const LayerColumns& c
           demand.first > 0 ? demand.first * slants[b] : length / unitSum(demand.layers, demand.expansion);
       if (heights[b].first > 0 && heights[b].first <= first) continue;
       heights[b] = {first, demand.expansion, demand.first > 0 ? 0 : length};
+      if (end == LayerEnd::EvenGrowth && length > heights[b].sum(demand.layers))
+        heights[b].expansion = expansionFor(length / first, demand.layers);
     }
   }
   return heights;

@@ -21,6 +21,12 @@ struct LayerSpec {
   double yPlus = 0;        ///< y+ of the first cell's centre, by FlowData; 0 = from the others
 };
 
+/// How layers whose first height is given end where the prism is higher than they need.
+enum class LayerEnd : std::uint8_t {
+  LastFills,  ///< the last layer takes what is left
+  EvenGrowth  ///< they grow faster there, by one ratio, so that the last one is no step to the cells inside
+};
+
 /// Layers on patches of their own.
 struct PatchLayers {
   std::string patches;  ///< a name; * stands for any characters, ? for one
@@ -64,7 +70,7 @@ class LayerDemands {
 /// Heights on each prism edge, #P by lower point: the thinnest layers that a column around the edge wants. A
 /// height above the wall becomes a length along the edge, which leans where the wall bends.
 std::vector<EdgeHeights> edgeHeights(const PolyMesh& mesh, const LayerColumns& columns,
-                                     const LayerDemands& demands);
+                                     const LayerDemands& demands, LayerEnd end);
 
 /// Length that each edge needs for all layers of the columns around it, #P by lower point; 0 where the layers
 /// share what there is.

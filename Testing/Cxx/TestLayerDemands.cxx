@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "BoundaryRefine.h"
 #include "TestMeshes.h"
@@ -82,6 +83,26 @@ TEST(LayerDemands, HeightAndThicknessGiveTheExpansion) {
   EXPECT_EQ(std::count_if(refined.points.begin(), refined.points.end(),
                           [&](const Vec3& p) { return std::abs(p.z() - second) < 1e-12; }),
             9 * 5);
+}
+
+TEST(LayerDemands, EvenGrowthFillsThePrism) {
+  BoundaryRefineOptions options;
+  options.layers = 4;
+  options.firstHeight = 0.02;
+  options.end = LayerEnd::EvenGrowth;
+  BoundaryRefineReport report;
+  const PolyMesh refined = refine(twoPatchFloor(), options, report);
+  EXPECT_EQ(report.facesByLayers, (std::vector<Id>{0, 0, 0, 32}));
+  std::set<double> levels;
+  for (const Vec3& p : refined.points)
+    if (p.z() > 2 - 1e-9) levels.insert(std::round(p.z() * 1e9) / 1e9);
+  ASSERT_EQ(levels.size(), 5u);
+  std::vector<double> z(levels.rbegin(), levels.rend()), ratio;
+  EXPECT_NEAR(z[0] - z[1], 0.02, 1e-8);
+  for (int i = 0; i < 3; ++i) ratio.push_back((z[i + 1] - z[i + 2]) / (z[i] - z[i + 1]));
+  EXPECT_GT(ratio[0], 1.2);
+  EXPECT_NEAR(ratio[1], ratio[0], 1e-5);
+  EXPECT_NEAR(ratio[2], ratio[0], 1e-5);
 }
 
 TEST(LayerDemands, PrismsAreMadeHigherForLayersThatNeedIt) {
