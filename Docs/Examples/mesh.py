@@ -100,6 +100,10 @@ def check_options(options):
             raise UserError(f"{name} must be a number larger than zero, not {value:g}.")
     if options.layers is not None and options.layers < 0:
         raise UserError(f"--layers must not be negative, but it is {options.layers}.")
+    if options.y_plus and not options.flow:
+        raise UserError("--y-plus needs the flow: give --flow SPEED LENGTH VISCOSITY.")
+    if options.y_plus and (options.first_height or options.thickness):
+        raise UserError("--y-plus says how high the first layer is; give it or lengths, not both.")
     for patch in options.patch_layers:
         if not patch[1].isdigit():
             raise UserError(f"--patch-layers takes a name and a number of layers, but got {patch[0]} {patch[1]}.")
@@ -116,7 +120,7 @@ def check_options(options):
             raise UserError("The coordinates of a point must be finite numbers.")
     if (options.far_box or options.far_sphere) and not options.domain:
         raise UserError("A far field needs the sides of a --domain to start from.")
-    if options.layers == 0:
+    if options.layers == 0 and not options.patch_layers:
         options.stop_after = min(options.stop_after, STAGES.index("ResolveFeatures"))
     for path in options.geometry:
         check_file(path)
@@ -266,6 +270,8 @@ def layers_filter(pm, options):
         refine.SetFlowSpeed(options.flow[0])
         refine.SetFlowLength(options.flow[1])
         refine.SetKinematicViscosity(options.flow[2])
+    if options.layers == 0:
+        refine.AddPatchLayer("*", 0, refine.GetExpansionRatio(), 0, 0, 0)
     for patch, layers in options.patch_layers:
         given = (first, thickness, y_plus) if int(layers) > 0 else (0, 0, 0)
         refine.AddPatchLayer(patch, int(layers), refine.GetExpansionRatio(), *given)

@@ -96,6 +96,12 @@ class MeshCommand(unittest.TestCase):
     def test_box_of_no_size(self):
         self.refused("box", CLEAN, "--domain", "0", "0", "0", "0", "1", "1")
 
+    def test_layers_that_contradict_themselves(self):
+        self.refused("name and a number", CLEAN, "--patch-layers", "wall", "few")
+        self.refused("flow must be", CLEAN, "--y-plus", "1", "--flow", "0", "1", "1")
+        self.refused("needs the flow", CLEAN, "--feature-size", "0.006", "--y-plus", "1")
+        self.refused("no wall is named", CLEAN, "--feature-size", "0.006", "--patch-layers", "nose*", "2")
+
     def test_unknown_stage_and_option(self):
         self.refused("no stage", CLEAN, "--stop-after", "later")
         self.refused("unrecognized", CLEAN, "--colour", "red")
