@@ -3,6 +3,7 @@
 #
 #   need_program PROGRAM   ends the script when this program of OpenFOAM is not there
 #   make_mesh OUT ...      ./mesh.sh; MESHER names another command that takes its options
+#   need_patches OUT ...   ends the script when the mesh has no patch of one of these names
 #   make_case OUT NAME     OUT/case: the dictionaries of the folder NAME beside this file, and the mesh
 #   solve OUT PROGRAM ...  runs it there; what it says goes to OUT/case/log.PROGRAM
 #   draw NAME OUT          pictures of the solution
@@ -21,8 +22,17 @@ need_program() {
 
 make_mesh() {
   local out=$1
+  [[ "$(realpath -m "$out")" != *[[:space:]]* ]] || fail "OpenFOAM takes no folder with a blank in its path; name another than $out."
   [ ! -e "$out/case" ] || fail "There is a case in $out/case already; remove it or name another folder."
   "${MESHER:-$root/mesh.sh}" -o "$@" || fail "There is no mesh to run on."
+}
+
+need_patches() {
+  local boundary=$1/polyMesh/boundary patch
+  shift
+  for patch in "$@"; do
+    grep -q "^ *$patch *\$" "$boundary" || fail "The mesh has no patch $patch; name the geometry's solids $*."
+  done
 }
 
 make_case() {

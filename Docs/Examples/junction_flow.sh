@@ -16,6 +16,7 @@ geometry=${3:-$root/Testing/Data/pipe_junction_dirty.stl}
 need_program simpleFoam
 # Cells in the middle at most twice the smallest: a solver needs them where the geometry alone does not.
 make_mesh "$out" "$geometry" --feature-size "$size" --base-size "$(awk "BEGIN { print 2 * $size }")" --layers 5
+need_patches "$out" inlet wall outlet1 outlet2 outlet3
 make_case "$out" junction_flow
 solve "$out" simpleFoam
 draw junction "$out"

@@ -23,7 +23,7 @@ CASES = {"junction_flow": ["inlet", "wall", "outlet1", "outlet2", "outlet3"],
          "motorbike_potential": ["frt-fairing_001_1", "xmin", "xmax", "ymin", "ymax", "zmin", "zmax"]}
 COARSE = 0.004  # m, a feature size
 MIDDLE, RADIUS = (1.0, 0.0, 1.25), 0.5  # m, of a sphere in the motorcycle's place
-TOOLS = ("bash", "sh", "dirname", "basename", "cat", "awk", "grep")
+TOOLS = ("bash", "sh", "dirname", "basename", "cat", "awk", "grep", "mkdir", "realpath")
 
 
 def run(*command, **environment):
@@ -144,6 +144,16 @@ class Scripts(unittest.TestCase):
         done = run(os.path.join(EXAMPLES, "junction_flow.sh"), self.out, PATH=self.with_stand_ins(),
                    MESHER=shutil.which("false"))
         self.refused(done, "There is no mesh to run on")
+
+    def test_other_patches(self):
+        with open(self.mesher, "w", encoding="ascii") as file:
+            file.write('#!/bin/sh\nmkdir -p "$2/polyMesh"\nprintf "    inlet\\n    walls\\n" > "$2/polyMesh/boundary"\n')
+        done = run(os.path.join(EXAMPLES, "junction_flow.sh"), self.out, PATH=self.with_stand_ins(), MESHER=self.mesher)
+        self.refused(done, "The mesh has no patch wall; name the geometry's solids inlet wall outlet1 outlet2 outlet3")
+
+    def test_blank_in_the_path(self):
+        done = run(os.path.join(EXAMPLES, "junction_flow.sh"), self.out + " 2", PATH=self.with_stand_ins())
+        self.refused(done, "no folder with a blank in its path")
 
     def test_report_tells_what_is_wrong(self):
         case = os.path.join(self.directory, "case")
