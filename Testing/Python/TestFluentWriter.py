@@ -7,12 +7,12 @@ import unittest
 import numpy as np
 from fluent_file import FluentFile, cell_volumes
 from support import Messages, arrays, box, chain, pm, strings
-from vtkmodules.vtkCommonDataModel import VTK_CONVEX_POINT_SET, VTK_HEXAHEDRON, VTK_POLYHEDRON, vtkUnstructuredGrid
+from vtkmodules.vtkCommonDataModel import VTK_CONVEX_POINT_SET, VTK_HEXAHEDRON, VTK_POLYHEDRON, VTK_WEDGE, vtkUnstructuredGrid
 from vtkmodules.vtkCommonTransforms import vtkTransform
 from vtkmodules.vtkFiltersGeneral import vtkTransformPolyDataFilter
 from vtkmodules.vtkIOGeometry import vtkFLUENTReader
 
-FLUENT_TYPE = {VTK_HEXAHEDRON: 4, VTK_POLYHEDRON: 7}
+FLUENT_TYPE = {VTK_HEXAHEDRON: 4, VTK_WEDGE: 6, VTK_POLYHEDRON: 7}
 
 
 def pipe_junction():
@@ -108,7 +108,7 @@ class TestFluentWriter(unittest.TestCase):
         self.each_case(check)
 
     def test_read_back_by_vtk(self):
-        """VTK keeps 32-bit coordinates, and of a polyhedron its points alone."""
+        """VTK keeps 32-bit coordinates, of a polyhedron its points alone, and turns wedges inside out."""
         def check(_, grid, __):
             back = read_by_vtk(self.path)
             self.assertEqual(back.GetNumberOfBlocks(), 1)
@@ -120,6 +120,7 @@ class TestFluentWriter(unittest.TestCase):
                 np.testing.assert_array_equal(a, b)
             volumes, again = cell_volumes(self.plain_cells(grid)), cell_volumes(self.plain_cells(back))
             self.assertEqual(len(again), np.sum(types != VTK_POLYHEDRON))
+            again[types[types != VTK_POLYHEDRON] == VTK_WEDGE] *= -1
             np.testing.assert_allclose(again, volumes, rtol=1e-4)
 
         self.each_case(check)
