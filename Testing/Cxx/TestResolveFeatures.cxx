@@ -347,6 +347,40 @@ void expectResolved(const Soup& shape, double size, Id corners, double share = 0
   EXPECT_LE(missed, 1);
 }
 
+/// A cube of edge 2 whose sides are three by three squares of two patches in turn.
+Soup checkerboard() {
+  Soup s;
+  s.names = {"black", "white"};
+  for (int axis = 0; axis < 3; ++axis)
+    for (int side = 0; side < 2; ++side)
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+          const auto at = [&](int a, int b) {
+            Vec3 p = Vec3::Zero();
+            p[axis] = 2 * side - 1;
+            p[(axis + 1) % 3] = 2. / 3 * a - 1;
+            p[(axis + 2) % 3] = 2. / 3 * b - 1;
+            return p;
+          };
+          s.quad(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1), (i + j + axis + side) % 2);
+        }
+  return s;
+}
+
+TEST(ResolveFeatures, CheckerboardOfPatches) {
+  const std::vector<double> before = patchAreas(checkerboard());
+  for (unsigned seed = 1; seed <= 2; ++seed) {
+    SCOPED_TRACE(seed);
+    Soup soup = checkerboard();
+    soup.turn(rotation(seed));
+    const Resolved r = resolve(soup, 0.17);
+    expectValid(r.mesh);
+    EXPECT_GT(r.report.resolvedLength, 0.98 * r.report.featureLength);
+    const std::vector<double> after = patchAreas(r.mesh);
+    for (std::size_t p = 0; p < after.size(); ++p) EXPECT_NEAR(after[p] / before[p], 1, 0.01);
+  }
+}
+
 TEST(ResolveFeatures, EdgesBehindAWallDoNotDentIt) {
   constexpr double cell = 0.1, edge = 2;
   Soup room = cube();
