@@ -2,7 +2,6 @@
 #include "FluentWriter.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 #include <Eigen/Geometry>
 
 #include <cstring>
@@ -11,6 +10,7 @@
 #include <map>
 #include <sstream>
 
+#include "TestFolder.h"
 #include "TestMeshes.h"
 
 namespace pm {
@@ -143,41 +143,18 @@ FluentText parse(const std::string& text) {
   return out;
 }
 
-/// A folder of its own for each test, removed afterwards.
-class FluentWriter : public ::testing::Test {
+class FluentWriter : public testing::FolderTest {
  protected:
   void SetUp() override {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ =
-        fs::temp_directory_path() / (std::string("pm_f_") + info->name() + "_" + std::to_string(::getpid()));
-    fs::remove_all(folder_);
+    FolderTest::SetUp();
     fs::create_directories(folder_);
   }
-  void TearDown() override { fs::remove_all(folder_); }
-
   std::string file() const { return (folder_ / "a.msh").string(); }
-  std::string read() const {
-    std::ifstream in(file(), std::ios::binary);
-    std::stringstream all;
-    all << in.rdbuf();
-    return all.str();
-  }
   FluentText write(const PolyMesh& mesh, bool binary) {
     writeFluent(mesh, file(), binary, monitor_);
-    return parse(read());
+    return parse(read("a.msh"));
   }
-  fs::path folder_;
-  Monitor monitor_;
 };
-
-PolyMesh room() {
-  testing::VoxelOptions o;
-  o.size = {3, 3, 3};
-  o.occupied = [](int i, int j, int k) { return !(i == 1 && j == 1 && k == 1); };
-  o.wallSide = {false, false, true, true, false, true};
-  o.deform = [](const Vec3& p) { return Vec3(p / 3 + Vec3(1e-7, 1e6, -1.0 / 7)); };
-  return testing::layeredVoxels(o);
-}
 
 /// Unit cubes one beside the other without touching, of the zones given.
 PolyMesh looseCubes(const std::vector<Id>& zones, std::vector<std::string> names) {
@@ -215,7 +192,7 @@ std::vector<double> volumes(const FluentText& text) {
 }
 
 TEST_F(FluentWriter, AsciiKeepsEveryBit) {
-  const PolyMesh mesh = room();
+  const PolyMesh mesh = testing::hollowRoom();
   const FluentText text = write(mesh, false);
   EXPECT_EQ(text.totals,
             (std::array<Id, 3>{static_cast<Id>(mesh.points.size()), mesh.cellCount, mesh.faceCount()}));
@@ -229,7 +206,7 @@ TEST_F(FluentWriter, AsciiKeepsEveryBit) {
 }
 
 TEST_F(FluentWriter, BinaryHoldsTheSame) {
-  const PolyMesh mesh = room();
+  const PolyMesh mesh = testing::hollowRoom();
   const FluentText ascii = write(mesh, false), binary = write(mesh, true);
   EXPECT_EQ(ascii.totals, binary.totals);
   EXPECT_EQ(ascii.points, binary.points);
@@ -240,7 +217,7 @@ TEST_F(FluentWriter, BinaryHoldsTheSame) {
     EXPECT_EQ(zone.name, binary.patches.at(id).name);
     EXPECT_EQ(zone.first, binary.patches.at(id).first);
   }
-  EXPECT_NE(read().find("(4 (60 "), std::string::npos);
+  EXPECT_NE(read("a.msh").find("(4 (60 "), std::string::npos);
 }
 
 TEST_F(FluentWriter, NormalsEnterTheFirstCell) {
@@ -256,7 +233,7 @@ TEST_F(FluentWriter, NormalsEnterTheFirstCell) {
 }
 
 TEST_F(FluentWriter, ZonesAreThePatches) {
-  const PolyMesh mesh = room();
+  const PolyMesh mesh = testing::hollowRoom();
   const FluentText text = write(mesh, true);
   std::map<std::string, FluentText::Zone> byName;
   Id next = 0;
@@ -376,7 +353,7 @@ TEST(FluentBoundary, NamesTellWhatFlowsThrough) {
 
 TEST_F(FluentWriter, FolderThatIsNotThereIsAnInputError) {
   try {
-    writeFluent(room(), (folder_ / "none" / "a.msh").string(), true, monitor_);
+    writeFluent(testing::hollowRoom(), (folder_ / "none" / "a.msh").string(), true, monitor_);
     FAIL() << "no error";
   } catch (const InputError& e) {
     EXPECT_NE(std::string(e.what()).find("none/a.msh"), std::string::npos);
@@ -388,8 +365,8 @@ TEST_F(FluentWriter, FullDiskKeepsTheOldFile) {
   std::ofstream(file()) << "old";
   fs::create_symlink("/dev/full", file() + ".part");
   for (bool binary : {false, true}) {
-    EXPECT_THROW(writeFluent(room(), file(), binary, monitor_), InputError);
-    EXPECT_EQ(read(), "old");
+    EXPECT_THROW(writeFluent(testing::hollowRoom(), file(), binary, monitor_), InputError);
+    EXPECT_EQ(read("a.msh"), "old");
     EXPECT_FALSE(fs::exists(fs::symlink_status(file() + ".part")));
     fs::create_symlink("/dev/full", file() + ".part");
   }
@@ -401,7 +378,7 @@ TEST_F(FluentWriter, AbortLeavesNothingHalfMade) {
     bool aborted() const override { return calls > 3; }
     void progress(double, const std::string&) override { ++calls; }
   } stop;
-  EXPECT_THROW(writeFluent(room(), file(), false, stop), AbortError);
+  EXPECT_THROW(writeFluent(testing::hollowRoom(), file(), false, stop), AbortError);
   EXPECT_TRUE(fs::is_empty(folder_));
 }
 

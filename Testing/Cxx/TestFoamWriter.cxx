@@ -2,7 +2,6 @@
 #include "FoamWriter.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstring>
 #include <filesystem>
@@ -10,6 +9,7 @@
 #include <map>
 #include <sstream>
 
+#include "TestFolder.h"
 #include "TestMeshes.h"
 
 namespace pm {
@@ -17,40 +17,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of its own for each test, removed afterwards.
-class FoamWriter : public ::testing::Test {
+class FoamWriter : public testing::FolderTest {
  protected:
-  void SetUp() override {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ =
-        fs::temp_directory_path() / (std::string("pm_") + info->name() + "_" + std::to_string(::getpid()));
-    fs::remove_all(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  std::string read(const std::string& name) const {
-    std::ifstream in(folder_ / name, std::ios::binary);
-    std::stringstream all;
-    all << in.rdbuf();
-    return all.str();
-  }
   /// What follows the header.
   std::string body(const std::string& name) const {
     const std::string all = read(name);
     return all.substr(all.find('}') + 1);
   }
-  fs::path folder_;
-  Monitor monitor_;
 };
-
-PolyMesh room() {
-  testing::VoxelOptions o;
-  o.size = {3, 3, 3};
-  o.occupied = [](int i, int j, int k) { return !(i == 1 && j == 1 && k == 1); };
-  o.wallSide = {false, false, true, true, false, true};
-  o.deform = [](const Vec3& p) { return Vec3(p / 3 + Vec3(1e-7, 1e6, -1.0 / 7)); };
-  return testing::layeredVoxels(o);
-}
 
 std::vector<double> numbers(std::string text) {
   for (char& c : text) {
@@ -87,7 +61,7 @@ std::vector<Id> expectedOrder(const PolyMesh& mesh) {
 }
 
 TEST_F(FoamWriter, AsciiKeepsEveryBit) {
-  const PolyMesh mesh = room();
+  const PolyMesh mesh = testing::hollowRoom();
   writePolyMesh(mesh, folder_.string(), false, monitor_);
   const std::vector<double> points = numbers(body("points"));
   ASSERT_EQ(points.size(), 1 + 3 * mesh.points.size());
@@ -109,7 +83,7 @@ TEST_F(FoamWriter, AsciiKeepsEveryBit) {
 }
 
 TEST_F(FoamWriter, BinaryHoldsTheSame) {
-  const PolyMesh mesh = room();
+  const PolyMesh mesh = testing::hollowRoom();
   writePolyMesh(mesh, folder_.string(), true, monitor_);
   std::size_t at = 0;
   const std::string points = body("points"), faces = body("faces"), owner = body("owner");
@@ -144,7 +118,7 @@ TEST_F(FoamWriter, NamesTellWallsFromOpenings) {
 }
 
 TEST_F(FoamWriter, BoundaryCoversAllFacesOnce) {
-  const PolyMesh mesh = room();
+  const PolyMesh mesh = testing::hollowRoom();
   writePolyMesh(mesh, folder_.string(), false, monitor_);
   std::istringstream in(body("boundary"));
   std::string word;
@@ -179,7 +153,7 @@ TEST_F(FoamWriter, BoundaryCoversAllFacesOnce) {
 }
 
 TEST_F(FoamWriter, NoteTellsTheCounts) {
-  const PolyMesh mesh = room();
+  const PolyMesh mesh = testing::hollowRoom();
   writePolyMesh(mesh, folder_.string(), true, monitor_);
   std::ostringstream note;
   note << "nPoints:" << mesh.points.size() << "  nCells:" << mesh.cellCount << "  nFaces:" << mesh.faceCount()
@@ -197,7 +171,7 @@ TEST(FoamPatchNames, AreWordsAndDifferent) {
 TEST_F(FoamWriter, StaleFilesGoOthersStay) {
   fs::create_directories(folder_);
   for (const char* name : {"cellZones", "points.gz", "mine.txt"}) std::ofstream(folder_ / name) << "old";
-  writePolyMesh(room(), folder_.string(), false, monitor_);
+  writePolyMesh(testing::hollowRoom(), folder_.string(), false, monitor_);
   EXPECT_FALSE(fs::exists(folder_ / "cellZones"));
   EXPECT_FALSE(fs::exists(folder_ / "points.gz"));
   EXPECT_TRUE(fs::exists(folder_ / "mine.txt"));
@@ -206,7 +180,7 @@ TEST_F(FoamWriter, StaleFilesGoOthersStay) {
 TEST_F(FoamWriter, FolderThatCannotBeMadeIsAnInputError) {
   std::ofstream(folder_) << "a file, not a folder";
   try {
-    writePolyMesh(room(), (folder_ / "polyMesh").string(), false, monitor_);
+    writePolyMesh(testing::hollowRoom(), (folder_ / "polyMesh").string(), false, monitor_);
     FAIL() << "no error";
   } catch (const InputError& e) {
     EXPECT_NE(std::string(e.what()).find(folder_.string()), std::string::npos);
@@ -218,14 +192,14 @@ TEST_F(FoamWriter, FullDiskIsAnInputErrorAndKeepsTheOldMesh) {
   fs::create_directories(folder_);
   std::ofstream(folder_ / "points") << "old";
   fs::create_symlink("/dev/full", folder_ / "owner.part");
-  EXPECT_THROW(writePolyMesh(room(), folder_.string(), true, monitor_), InputError);
+  EXPECT_THROW(writePolyMesh(testing::hollowRoom(), folder_.string(), true, monitor_), InputError);
   EXPECT_EQ(read("points"), "old");
   for (const auto& entry : fs::directory_iterator(folder_)) EXPECT_EQ(entry.path().filename(), "points");
 }
 
 TEST_F(FoamWriter, NameThatIsTakenByAFolderIsAnInputError) {
   fs::create_directories(folder_ / "points" / "inside");
-  EXPECT_THROW(writePolyMesh(room(), folder_.string(), true, monitor_), InputError);
+  EXPECT_THROW(writePolyMesh(testing::hollowRoom(), folder_.string(), true, monitor_), InputError);
   EXPECT_FALSE(fs::exists(folder_ / "faces"));
 }
 
@@ -235,7 +209,7 @@ TEST_F(FoamWriter, AbortLeavesNothingHalfMade) {
     bool aborted() const override { return calls > 3; }
     void progress(double, const std::string&) override { ++calls; }
   } stop;
-  EXPECT_THROW(writePolyMesh(room(), folder_.string(), false, stop), AbortError);
+  EXPECT_THROW(writePolyMesh(testing::hollowRoom(), folder_.string(), false, stop), AbortError);
   EXPECT_TRUE(fs::is_empty(folder_));
 }
 

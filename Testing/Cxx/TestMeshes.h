@@ -34,6 +34,15 @@ struct VoxelOptions {
 };
 PolyMesh layeredVoxels(const VoxelOptions& options);
 
+/// A room around a solid cube at coordinates of odd digits, with walls and domain sides.
+inline PolyMesh hollowRoom() {
+  VoxelOptions o;
+  o.occupied = [](int i, int j, int k) { return !(i == 1 && j == 1 && k == 1); };
+  o.wallSide = {false, false, true, true, false, true};
+  o.deform = [](const Vec3& p) { return Vec3(p / 3 + Vec3(1e-7, 1e6, -1.0 / 7)); };
+  return layeredVoxels(o);
+}
+
 /// A solid unit cube in the middle of a box: every wall edge is convex.
 inline VoxelOptions cubeInBox() {
   VoxelOptions o;

@@ -2,7 +2,6 @@
 #include "StlWriter.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include <map>
 #include <sstream>
 
+#include "TestFolder.h"
 #include "TestMeshes.h"
 
 namespace pm {
@@ -18,17 +18,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of its own for each test, removed afterwards.
-class StlWriter : public ::testing::Test {
+class StlWriter : public testing::FolderTest {
  protected:
   void SetUp() override {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ =
-        fs::temp_directory_path() / (std::string("pm_s_") + info->name() + "_" + std::to_string(::getpid()));
-    fs::remove_all(folder_);
+    FolderTest::SetUp();
     fs::create_directories(folder_);
   }
-  void TearDown() override { fs::remove_all(folder_); }
   std::string file() const { return (folder_ / "a.stl").string(); }
 
   /// Triangles as runs of three corners, by the name of their solid.
@@ -48,8 +43,6 @@ class StlWriter : public ::testing::Test {
     }
     return solids;
   }
-  fs::path folder_;
-  Monitor monitor_;
 };
 
 /// The boundary of a mesh.
