@@ -66,8 +66,10 @@ class Explainer {
   std::vector<CurveArc> openArcs(const std::vector<CurveArc>& covered) const;
   void explainArc(const CurveArc& arc, std::vector<UnresolvedFeature>& parts) const;
   Answer explain(Id curve, double arc) const;
-  NearNode nearestNode(const Vec3& at, double reach, bool mustSee) const;
-  const MissedTarget* missedNear(const Vec3& at, double reach) const;
+  template <class Wanted>
+  NearNode nearestNode(const Vec3& at, double reach, const Wanted& wanted) const;
+  bool sees(Id row, const Vec3& at) const { return view_.sees(view_.wall.nodes[row], at); }
+  const MissedTarget* missed(Id row) const;  ///< null for a node that reached its target or has none
   double closestOther(Id curve, const Vec3& at, double scale) const;
   bool meet(Id curve, Id other, const Vec3& at, double reach) const;
   double wedge(Id row, Id curve, double arc) const;
@@ -97,36 +99,24 @@ std::vector<CurveArc> Explainer::openArcs(const std::vector<CurveArc>& covered) 
   return open;
 }
 
-NearNode Explainer::nearestNode(const Vec3& at, double reach, bool mustSee) const {
+template <class Wanted>
+NearNode Explainer::nearestNode(const Vec3& at, double reach, const Wanted& wanted) const {
   NearNode best;
   nodes_.nearest(
       at, [&] { return std::min(best.distance2, reach * reach); },
       [&](Id slot) {
-        const Id row = nodes_.order()[slot], p = view_.wall.nodes[row];
-        const double d2 = (view_.mesh.points[p] - at).squaredNorm();
+        const Id row = nodes_.order()[slot];
+        const double d2 = (view_.mesh.points[view_.wall.nodes[row]] - at).squaredNorm();
         if (d2 > reach * reach || d2 > best.distance2 || (d2 == best.distance2 && row > best.row)) return;
-        if (!mustSee || view_.sees(p, at)) best = {row, d2};
+        if (wanted(row)) best = {row, d2};
       });
   return best;
 }
 
-const MissedTarget* Explainer::missedNear(const Vec3& at, double reach) const {
-  const MissedTarget* nearest = nullptr;
-  double best2 = reach * reach;
-  Box box;
-  box.add(at - Vec3::Constant(reach));
-  box.add(at + Vec3::Constant(reach));
-  nodes_.overlapping(box, [&](Id slot) {
-    const Id row = nodes_.order()[slot];
-    const double d2 = (view_.mesh.points[view_.wall.nodes[row]] - at).squaredNorm();
-    const auto it = std::lower_bound(missed_.begin(), missed_.end(), row,
-                                     [](const MissedTarget& m, Id r) { return m.row < r; });
-    if (it == missed_.end() || it->row != row || d2 > best2) return;
-    if (d2 == best2 && nearest != nullptr && nearest->row < row) return;
-    best2 = d2;
-    nearest = &*it;
-  });
-  return nearest;
+const MissedTarget* Explainer::missed(Id row) const {
+  const auto it = std::lower_bound(missed_.begin(), missed_.end(), row,
+                                   [](const MissedTarget& m, Id r) { return m.row < r; });
+  return it != missed_.end() && it->row == row ? &*it : nullptr;
 }
 
 void Explainer::explainArc(const CurveArc& arc, std::vector<UnresolvedFeature>& parts) const {
@@ -141,11 +131,12 @@ void Explainer::explainArc(const CurveArc& arc, std::vector<UnresolvedFeature>& 
   };
   for (int i = 0; i < count; ++i) {
     const Answer next = explain(arc.curve, arc.from + (i + 0.5) / count * length);
-    if (i > 0 && !(next == answer)) close(arc.from + i * length / count);
-    const bool starts = begin == arc.from + i * length / count;
-    const double size = starts ? next.size : std::min(answer.size, next.size);
+    if (i > 0 && next == answer) {
+      answer.size = std::min(answer.size, next.size);
+      continue;
+    }
+    if (i > 0) close(arc.from + i * length / count);
     answer = next;
-    answer.size = size;
   }
   close(arc.to);
 }
@@ -153,11 +144,10 @@ void Explainer::explainArc(const CurveArc& arc, std::vector<UnresolvedFeature>& 
 Answer Explainer::explain(Id curve, double arc) const {
   const Vec3 at = table_.at(curve, arc);
   const double finest = view_.mesh.finestSize;
-  NearNode node = nearestNode(at, kReach * finest, true);
+  NearNode node = nearestNode(at, kReach * finest, [&](Id row) { return sees(row, at); });
   if (node.row == kNone) {
-    node = nearestNode(at, kFar * finest, false);
-    const bool isWedge = node.row != kNone && view_.sees(view_.wall.nodes[node.row], at) &&
-                         wedge(node.row, curve, arc) < kAcute;
+    node = nearestNode(at, kFar * finest, [](Id) { return true; });
+    const bool isWedge = node.row != kNone && sees(node.row, at) && wedge(node.row, curve, arc) < kAcute;
     return {isWedge ? Unresolved::Acute : Unresolved::NotOnWall, Refusal::None, 0};
   }
   const double scale = view_.wall.scale[node.row];
@@ -169,7 +159,8 @@ Answer Explainer::explain(Id curve, double arc) const {
   if (other < kClose * scale)
     return {Unresolved::TooClose, Refusal::None, other > 1e-3 * scale ? other : 0.0};
   if (wedge(node.row, curve, arc) < kAcute) return {Unresolved::Acute, Refusal::None, 0};
-  if (const MissedTarget* miss = missedNear(at, scale)) return {Unresolved::Limit, miss->limit, 0.5 * scale};
+  const NearNode miss = nearestNode(at, scale, [&](Id row) { return missed(row) != nullptr; });
+  if (miss.row != kNone) return {Unresolved::Limit, missed(miss.row)->limit, 0.5 * scale};
   return {Unresolved::NoPath, Refusal::None, 0.5 * scale};
 }
 
