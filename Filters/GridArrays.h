@@ -50,6 +50,15 @@ void addArray(vtkFieldData* data, const char* name, const std::vector<T>& values
   data->AddArray(array);
 }
 
+/// The values of one kind of all rows, in their order.
+template <class T, class Rows, class Value>
+std::vector<T> column(const Rows& rows, const Value& value) {
+  std::vector<T> values;
+  values.reserve(rows.size());
+  for (const auto& row : rows) values.push_back(value(row));
+  return values;
+}
+
 /// The values of an array of any numeric type. An absent array is an empty vector.
 template <class T>
 std::vector<T> readArray(vtkFieldData* data, const char* name) {

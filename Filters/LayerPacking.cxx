@@ -16,18 +16,10 @@
 namespace pm {
 namespace {
 
-/// The values of one kind of all rows.
-template <class T, class Value>
-std::vector<T> column(const BoundaryRefineReport& report, const Value& value) {
-  std::vector<T> values;
-  for (const PatchCoverage& patch : report.patches) values.push_back(value(patch));
-  return values;
-}
-
 void addDoubles(const BoundaryRefineReport& report, vtkFieldData* rows, const char* name,
                 double PatchCoverage::*member, double scale = 1) {
-  addArray<vtkDoubleArray>(rows, name,
-                           column<double>(report, [&](const PatchCoverage& p) { return scale * p.*member; }));
+  addArray<vtkDoubleArray>(
+      rows, name, column<double>(report.patches, [&](const PatchCoverage& p) { return scale * p.*member; }));
 }
 
 }  // namespace
@@ -52,12 +44,14 @@ void packLayerTable(const BoundaryRefineReport& report, vtkTable* table) {
   table->Initialize();
   vtkDataSetAttributes* rows = table->GetRowData();
   constexpr double kPercent = 100;
-  addStrings(rows, "Patch", column<std::string>(report, [](const PatchCoverage& p) { return p.name; }));
+  addStrings(rows, "Patch",
+             column<std::string>(report.patches, [](const PatchCoverage& p) { return p.name; }));
   addArray<vtkTypeInt32Array>(rows, "Faces",
-                              column<Id>(report, [](const PatchCoverage& p) { return p.faces; }));
+                              column<Id>(report.patches, [](const PatchCoverage& p) { return p.faces; }));
   addDoubles(report, rows, "Area", &PatchCoverage::area);
-  addArray<vtkTypeInt32Array>(rows, "LayersWanted",
-                              column<Id>(report, [](const PatchCoverage& p) { return p.wantedLayers; }));
+  addArray<vtkTypeInt32Array>(rows, "LayersWanted", column<Id>(report.patches, [](const PatchCoverage& p) {
+                                return p.wantedLayers;
+                              }));
   addDoubles(report, rows, "Layers", &PatchCoverage::layers);
   addDoubles(report, rows, "AllLayers", &PatchCoverage::allLayers, kPercent);
   addDoubles(report, rows, "Covered", &PatchCoverage::covered, kPercent);
@@ -67,7 +61,7 @@ void packLayerTable(const BoundaryRefineReport& report, vtkTable* table) {
   addDoubles(report, rows, "FirstHeightLeast", &PatchCoverage::minFirst);
   addDoubles(report, rows, "Thickness", &PatchCoverage::thickness);
   for (int i = 1; i < kLayerReasons; ++i) {
-    const auto counts = column<Id>(report, [i](const PatchCoverage& p) { return p.byReason[i]; });
+    const auto counts = column<Id>(report.patches, [i](const PatchCoverage& p) { return p.byReason[i]; });
     if (std::any_of(counts.begin(), counts.end(), [](Id n) { return n > 0; }))
       addArray<vtkTypeInt32Array>(rows, describe(static_cast<LayerReason>(i)), counts);
   }

@@ -19,15 +19,6 @@ namespace pm {
 
 namespace {
 
-/// One value of each row.
-template <class T, class Rows, class Value>
-std::vector<T> column(const Rows& rows, const Value& value) {
-  std::vector<T> values;
-  values.reserve(rows.size());
-  for (const auto& row : rows) values.push_back(value(row));
-  return values;
-}
-
 /// The listed faces and the points they use.
 void packRows(const PolyMesh& mesh, const std::vector<Id>& faces, vtkPolyData* surface) {
   std::vector<vtkIdType> newId(mesh.points.size(), -1);

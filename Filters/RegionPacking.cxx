@@ -19,22 +19,14 @@ namespace pm {
 
 namespace {
 
-/// The regions' values of one kind, in their order.
-template <class T, class Value>
-std::vector<T> column(const PaintFrontReport& report, const Value& value) {
-  std::vector<T> values;
-  for (const PaintedRegion& region : report.regions) values.push_back(value(region));
-  return values;
-}
-
 std::vector<Id> cellCounts(const PaintFrontReport& report) {
-  return column<Id>(report, [](const PaintedRegion& r) { return r.cells; });
+  return column<Id>(report.regions, [](const PaintedRegion& r) { return r.cells; });
 }
 std::vector<double> volumes(const PaintFrontReport& report) {
-  return column<double>(report, [](const PaintedRegion& r) { return r.volume; });
+  return column<double>(report.regions, [](const PaintedRegion& r) { return r.volume; });
 }
 std::vector<std::uint8_t> openFlags(const PaintFrontReport& report) {
-  return column<std::uint8_t>(report, [](const PaintedRegion& r) { return std::uint8_t(r.open); });
+  return column<std::uint8_t>(report.regions, [](const PaintedRegion& r) { return std::uint8_t(r.open); });
 }
 
 /// Rows of several numbers each.
@@ -50,7 +42,7 @@ void addRows(vtkFieldData* data, const char* name, int components, const std::ve
 /// Names of the zones beside the regions that are in the mesh.
 std::vector<std::string> zoneNames(const PaintFrontReport& report, const PolyMesh& mesh) {
   std::size_t zone = 0;
-  return column<std::string>(report, [&](const PaintedRegion& r) {
+  return column<std::string>(report.regions, [&](const PaintedRegion& r) {
     return r.chosen && zone < mesh.zoneNames.size() ? mesh.zoneNames[zone++] : std::string();
   });
 }
@@ -116,16 +108,17 @@ void packRegionTable(const PaintFrontReport& report, const PolyMesh& mesh, vtkTa
     append(bounds, region.bounds);
   }
   addArray<vtkTypeInt32Array>(rows, "Region",
-                              column<Id>(report, [&](const PaintedRegion&) { return next++; }));
+                              column<Id>(report.regions, [&](const PaintedRegion&) { return next++; }));
   addArray<vtkDoubleArray>(rows, "Volume", volumes(report));
   addArray<vtkTypeInt32Array>(rows, "Cells", cellCounts(report));
   addArray<vtkUnsignedCharArray>(rows, "Open", openFlags(report));
-  addArray<vtkUnsignedCharArray>(rows, "Chosen", column<std::uint8_t>(report, [](const PaintedRegion& r) {
-                                   return std::uint8_t(r.chosen);
-                                 }));
+  addArray<vtkUnsignedCharArray>(
+      rows, "Chosen",
+      column<std::uint8_t>(report.regions, [](const PaintedRegion& r) { return std::uint8_t(r.chosen); }));
   addStrings(rows, "Zone", zoneNames(report, mesh));
-  addStrings(rows, "Patches",
-             column<std::string>(report, [&](const PaintedRegion& r) { return joinNames(r.patches, mesh); }));
+  addStrings(rows, "Patches", column<std::string>(report.regions, [&](const PaintedRegion& r) {
+               return joinNames(r.patches, mesh);
+             }));
   addRows(rows, "Point", 3, points);
   addRows(rows, "Bounds", 6, bounds);
 }

@@ -8,7 +8,6 @@
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
-#include "vtkResolveFeatures.h"
 
 vtkStandardNewMacro(vtkDetectFeatures);
 
@@ -24,7 +23,7 @@ vtkDetectFeatures::vtkDetectFeatures() : vtkMeshStage(2, 0, 1) {
 }
 
 int vtkDetectFeatures::FillInputPortInformation(int port, vtkInformation* info) {
-  if (port == 1) return vtkResolveFeatures::DescribeCurvesPort(info);
+  if (port == 1) return DescribeOptionalPort(info);
   return this->Superclass::FillInputPortInformation(port, info);
 }
 

@@ -20,10 +20,24 @@ vtkMeshStage::vtkMeshStage(int inputPorts, int geometryPort, int outputPorts) : 
 
 vtkMeshStage::~vtkMeshStage() { this->SetPatchArray(nullptr); }
 
+namespace {
+
+void takePolyData(vtkInformation* info) {
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
+}
+
+}  // namespace
+
+int vtkMeshStage::DescribeOptionalPort(vtkInformation* info) {
+  takePolyData(info);
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  return 1;
+}
+
 int vtkMeshStage::FillInputPortInformation(int port, vtkInformation* info) {
   if (port == this->GeometryPort) {
-    info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
-    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
+    takePolyData(info);
   } else {
     info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkUnstructuredGrid");
   }

@@ -65,6 +65,9 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkMeshStage : public vtkUnstructuredGridAl
   /// own.
   virtual void ShowFailure() {}
 
+  /// For an input port that takes a polydata or a composite of them, and may be left empty.
+  static int DescribeOptionalPort(vtkInformation* info);
+
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override;

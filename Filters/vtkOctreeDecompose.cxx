@@ -151,15 +151,8 @@ int vtkOctreeDecompose::GetNumberOfSurfaceDistances() const {
   return static_cast<int>(this->Repeated->surfaceDistances.size());
 }
 
-int vtkOctreeDecompose::DescribeSizeSurfacePort(vtkInformation* info) {
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
-  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
-  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
-  return 1;
-}
-
 int vtkOctreeDecompose::FillInputPortInformation(int port, vtkInformation* info) {
-  return port == 1 ? DescribeSizeSurfacePort(info) : this->Superclass::FillInputPortInformation(port, info);
+  return port == 1 ? DescribeOptionalPort(info) : this->Superclass::FillInputPortInformation(port, info);
 }
 
 pm::OctreeDecomposeOptions vtkOctreeDecompose::Options(vtkDataObject* sizeSurface) const {

@@ -218,8 +218,6 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkOctreeDecompose : public vtkMeshStage {
 
   /** The properties as the kernel takes them; sizeSurface: what lies on input port 1, if anything. */
   pm::OctreeDecomposeOptions Options(vtkDataObject* sizeSurface = nullptr) const;
-  /** What the input port of the size surface takes. */
-  static int DescribeSizeSurfacePort(vtkInformation* info);
 
  protected:
   vtkOctreeDecompose();

@@ -98,8 +98,7 @@ int vtkProjectionMesh::FillOutputPortInformation(int port, vtkInformation* info)
 }
 
 int vtkProjectionMesh::FillInputPortInformation(int port, vtkInformation* info) {
-  if (port == 1) return vtkOctreeDecompose::DescribeSizeSurfacePort(info);
-  if (port == 2) return vtkResolveFeatures::DescribeCurvesPort(info);
+  if (port == 1 || port == 2) return DescribeOptionalPort(info);
   return this->Superclass::FillInputPortInformation(port, info);
 }
 

@@ -25,15 +25,8 @@ vtkResolveFeatures::vtkResolveFeatures() : vtkFoamLimitsStage(3, 1) {
   this->SetNumberOfOutputPorts(UNRESOLVED + 1);
 }
 
-int vtkResolveFeatures::DescribeCurvesPort(vtkInformation* info) {
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
-  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
-  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
-  return 1;
-}
-
 int vtkResolveFeatures::FillInputPortInformation(int port, vtkInformation* info) {
-  return port == 2 ? DescribeCurvesPort(info) : this->Superclass::FillInputPortInformation(port, info);
+  return port == 2 ? DescribeOptionalPort(info) : this->Superclass::FillInputPortInformation(port, info);
 }
 
 pm::ResolveFeaturesOptions vtkResolveFeatures::Options(vtkDataObject* curves) const {

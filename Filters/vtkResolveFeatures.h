@@ -80,8 +80,6 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkResolveFeatures : public vtkFoamLimitsSt
 
   /** The properties, and the polylines if any, as the kernel takes them. */
   pm::ResolveFeaturesOptions Options(vtkDataObject* curves) const;
-  /** What an input port for polylines takes, for other filters that have one. */
-  static int DescribeCurvesPort(vtkInformation* info);
 
  protected:
   vtkResolveFeatures();

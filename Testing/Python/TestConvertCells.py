@@ -4,7 +4,7 @@ import tempfile
 import unittest
 
 import numpy as np
-from support import Messages, arrays, chain, differences, pm, sphere, strings
+from support import Messages, arrays, chain, differences, pm, sphere, strings, validity
 from vtkmodules.vtkCommonDataModel import VTK_HEXAHEDRON, VTK_PYRAMID, VTK_TETRA, VTK_WEDGE, vtkUnstructuredGrid
 from vtkmodules.vtkFiltersVerdict import vtkCellSizeFilter
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
@@ -31,13 +31,6 @@ def convert(mesh, shapes=0, **properties):
         getattr(cells, "Set" + key)(value)
     cells.Update()
     return cells
-
-
-def validity(mesh):
-    check = pm.vtkMeshValidity()
-    check.SetInputDataObject(mesh)
-    check.Update()
-    return check
 
 
 def cell_volumes(mesh):

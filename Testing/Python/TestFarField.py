@@ -4,7 +4,7 @@ import tempfile
 import unittest
 
 import numpy as np
-from support import Messages, arrays, chain, differences, pm, sphere, strings
+from support import Messages, arrays, chain, differences, pm, sphere, strings, validity
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
 
 
@@ -21,13 +21,6 @@ def far_field(mesh, **properties):
         getattr(far, "Set" + key)(value)
     far.Update()
     return far
-
-
-def validity(mesh):
-    check = pm.vtkMeshValidity()
-    check.SetInputDataObject(mesh)
-    check.Update()
-    return check
 
 
 def boundary_of(far, patch):

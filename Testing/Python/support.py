@@ -42,6 +42,13 @@ def polyline(points):
     return source.GetOutput()
 
 
+def validity(mesh):
+    check = pm.vtkMeshValidity()
+    check.SetInputDataObject(mesh)
+    check.Update()
+    return check
+
+
 def chain(geometry, size, last=len(STAGES), **properties):
     """The first `last` stages, connected and updated; properties go to every stage that has them."""
     stages = []
