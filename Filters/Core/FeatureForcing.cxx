@@ -11,6 +11,9 @@ namespace pm {
 namespace {
 
 constexpr int kMendSweeps = 6;
+// Badness around a forced node (above 1: invalid) from which on it is given up: at once, and after a sweep.
+// Of what is worse, one in fifty comes out valid.
+constexpr double kHopeless = 4, kHopelessMended = 1.5;
 constexpr double kMendSteps[] = {0.3, 0.12};  // length scales
 
 Span<Id> spanOf(const std::vector<Id>& ids) { return {ids.data(), ids.data() + ids.size()}; }
@@ -69,13 +72,14 @@ void FeatureSnapper::force() {
 void FeatureSnapper::forceNode(Id row, Span<Id> points) {
   const Id p = points[0], b = points[1];
   const Vec3 to = target_[row];
-  if (!staysNear(row, to, kSnapTolerance * wall_.scale[row])) return;
+  if (!canReach(row)) return;
   std::vector<Vec3> targets;  // of nodes that may slide along their curves
   for (Id n : wall_.neighbours[row]) targets.push_back(target_[n]);
   NodeMover::Trial trial(mover_);
   trial.force({p, b}, {to, flatBase(row, to)});
-  double last = std::numeric_limits<double>::infinity();
-  for (int sweep = 0; sweep < kMendSweeps; ++sweep) {
+  const auto badness = [&] { return std::max(mover_.badness(p), mover_.badness(b)); };
+  double last = badness();
+  for (int sweep = 0; sweep < kMendSweeps && last < kHopeless; ++sweep) {
     mendInner(b, flatBase(row, to), wall_.scale[row]);
     for (Id q : Span<Id>{points.first + 2, points.last}) {
       if (wall_.rowOf[q] != kNone)
@@ -83,8 +87,8 @@ void FeatureSnapper::forceNode(Id row, Span<Id> points) {
       else
         mendInner(q, neighbourMean(q), wall_.scale[row]);
     }
-    const double bad = std::max(mover_.badness(p), mover_.badness(b));
-    if (bad <= 1 || bad > 0.98 * last) break;
+    const double bad = badness();
+    if (bad <= 1 || bad > std::min(0.98 * last, kHopelessMended)) break;
     last = bad;
   }
   if (trial.settle()) {
@@ -130,7 +134,7 @@ void FeatureSnapper::mendWallNode(Id row) {
       } else {
         to = field_.closest(to).point;
       }
-      if (!staysNear(row, to, kSmoothTolerance * wall_.scale[row]) || !mover_.improve(p, to, bad)) continue;
+      if (!improveNear(row, to, bad)) continue;
       bad = mover_.badness(p);
       if (onCurve) target_[row] = mesh_.points[p];
     }
@@ -179,7 +183,7 @@ WallCut FeatureSnapper::cutFor(Id row) const {
 std::vector<WallCut> FeatureSnapper::helpfulCuts() const {
   std::vector<WallCut> cuts;
   for (Id row : missed())
-    if (staysNear(row, target_[row], kSnapTolerance * wall_.scale[row]))
+    if (canReach(row))
       if (const WallCut cut = cutFor(row); cut.face != kNone) cuts.push_back(cut);
   return cuts;
 }

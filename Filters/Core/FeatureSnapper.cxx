@@ -3,16 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace pm {
 namespace {
 
-constexpr int kRings = 3;           // wall nodes this many edges from a target take part in the smoothing
+constexpr int kRings = 2;           // wall nodes this many edges from a target take part in the smoothing
 constexpr int kDistanceGroups = 4;  // eq 4-31
 // In length scales: what counts as reached, and how near the nodes of a path may come.
 constexpr double kReached = 1e-3;
 constexpr double kCrowded = 0.2;
+constexpr double kFine = 0.9;  // badness below which cells are well enough not to be worth another try
 
 }  // namespace
 
@@ -55,7 +57,6 @@ void FeatureSnapper::setTargets(const FeaturePaths& paths) {
       before_[b] = a;
     }
   }
-  workAround(missed());
 }
 
 void FeatureSnapper::noteChange(Span<Id> points) {
@@ -139,6 +140,11 @@ double FeatureSnapper::distance(Id row) const {
   return (target_[row] - mesh_.points[wall_.nodes[row]]).norm() / wall_.scale[row];
 }
 
+/// Would the wall around the node stay near the geometry with the node at its target?
+bool FeatureSnapper::canReach(Id row) const {
+  return staysNear(row, mesh_.points[wall_.nodes[row]], target_[row], kSnapTolerance * wall_.scale[row]);
+}
+
 bool FeatureSnapper::reached(Id row) const { return distance(row) <= kReached; }
 
 std::vector<Id> FeatureSnapper::missed() const {
@@ -169,8 +175,7 @@ std::vector<MissedTarget> FeatureSnapper::releaseMissed() {
   std::vector<MissedTarget> given;
   for (Id row : missed()) {
     Refusal limit = Refusal::Other;
-    if (staysNear(row, target_[row], kSnapTolerance * wall_.scale[row]))
-      limit = mover_.tryMove(wall_.nodes[row], target_[row]);
+    if (canReach(row)) limit = mover_.tryMove(wall_.nodes[row], target_[row]);
     if (limit == Refusal::None) continue;  // room was made for it since the last attempt
     given.push_back({row, curve_[row], corner_[row], limit});
     role_[row] = Role::Free;
@@ -232,27 +237,42 @@ bool FeatureSnapper::crowdsPath(Id row, const Vec3& at) const {
 bool FeatureSnapper::tryMove(Id row, const Vec3& to, double tolerance) {
   const Id p = wall_.nodes[row], b = mesh_.base[p];
   const Vec3 from = mesh_.points[p];
-  if (!staysNear(row, to, tolerance * wall_.scale[row])) return false;
+  // Asked late, for it costs most, and once.
+  std::optional<bool> isNear;
+  const auto accept = [&] {
+    if (!isNear) isNear = staysNear(row, from, to, tolerance * wall_.scale[row]);
+    return *isNear;
+  };
   bool kept = false;
   if (b != kNone) {
     const Vec3 low = mesh_.points[b];
     for (const Vec3& at : {Vec3(low + 0.5 * (to - from)), Vec3(low + to - from), flatBase(row, to)}) {
-      kept = mover_.moveTogether({p, b}, {to, at});
+      kept = mover_.moveTogetherIf({p, b}, {to, at}, accept);
+      if (isNear == false) return false;
       if (!kept) continue;
       changed_[b] = pass_;
       break;
     }
   }
-  kept = kept || mover_.move(p, to);
+  kept = kept || mover_.moveIf(p, to, accept);
   if (kept) changed_[p] = pass_;
   return kept;
 }
 
+/// Moves a wall node if that betters the worst measure around it, now `badness`, and no face leaves the
+/// geometry.
+bool FeatureSnapper::improveNear(Id row, const Vec3& to, double badness) {
+  const Id p = wall_.nodes[row];
+  const Vec3 from = mesh_.points[p];
+  return mover_.improveIf(p, to, badness,
+                          [&] { return staysNear(row, from, to, kSmoothTolerance * wall_.scale[row]); });
+}
+
 /// Were the node at `to`, would the representative points that follow it be within the limit of the geometry,
-/// or no farther than they are?
-bool FeatureSnapper::staysNear(Id row, const Vec3& to, double limit) const {
+/// or no farther than with it at `from`?
+bool FeatureSnapper::staysNear(Id row, const Vec3& from, const Vec3& to, double limit) const {
   const double there = deviation(row, to, limit);
-  return there <= limit || there <= deviation(row, mesh_.points[wall_.nodes[row]], there);
+  return there <= limit || there <= deviation(row, from, there);
 }
 
 /// Largest distance to the geometry of the representative points that follow the node, were it there. Below
@@ -310,7 +330,7 @@ void FeatureSnapper::smoothWallNode(Id row, bool onlyBetter) {
   const Vec3 to = field_.closest(from + 0.5 * step).point;
   if ((to - from).norm() < 0.01 * wall_.scale[row]) return;
   if (onlyBetter) {
-    if (staysNear(row, to, kSmoothTolerance * wall_.scale[row])) mover_.improve(p, to);
+    improveNear(row, to, mover_.badness(p));
   } else {
     tryMove(row, to, kSmoothTolerance);
   }
@@ -325,8 +345,7 @@ void FeatureSnapper::slideOnCurve(Id row) {
   const ClosestOnFeature on = graph_.closestOnCurve(0.5 * mesh_.points[p] + 0.25 * (a + b), curve_[row]);
   const double limit = kSmoothTolerance * wall_.scale[row];
   if (on.segment == kNone || (on.point - mesh_.points[p]).norm() < 0.5 * limit) return;
-  if (!staysNear(row, on.point, limit)) return;
-  if (!mover_.improve(p, on.point)) return;
+  if (!improveNear(row, on.point, mover_.badness(p))) return;
   target_[row] = mesh_.points[p];
   changed_[p] = pass_;
 }
@@ -348,8 +367,10 @@ void FeatureSnapper::smoothInner() {
   ++pass_;
   mover_.forEach(inner_, [&](Id p) {
     if (!stirredBelow(p)) return;
+    const double badness = mover_.badness(p);
+    if (badness < kFine) return;
     const Vec3 to = 0.5 * (mesh_.points[p] + neighbourMean(p));
-    if (mover_.improve(p, to)) changed_[p] = pass_;
+    if (mover_.improve(p, to, badness)) changed_[p] = pass_;
   });
 }
 
@@ -368,13 +389,17 @@ void FeatureSnapper::relax() {
 void FeatureSnapper::polish() {
   ++pass_;
   forEachRow(active_, [&](Id row) {
+    if (mover_.badness(wall_.nodes[row]) < kFine) return;
     if (role_[row] == Role::Free)
       smoothWallNode(row, true);
     else if (role_[row] == Role::Curve)
       slideOnCurve(row);
   });
   ++pass_;
-  forEachRow(active_, [&](Id row) { settleBase(row, true); });
+  forEachRow(active_, [&](Id row) {
+    const Id b = mesh_.base[wall_.nodes[row]];
+    if (b != kNone && mover_.badness(b) >= kFine) settleBase(row, true);
+  });
   smoothInner();
 }
 

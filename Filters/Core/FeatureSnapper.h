@@ -25,11 +25,11 @@ class FeatureSnapper {
   FeatureSnapper(NodeMover& mover, const WallSurface& wall, const DistanceField& field,
                  const FeatureGraph& graph, const std::vector<double>& height);
 
-  /// Takes over targets, and works from now on around those that are not reached.
+  /// Takes over targets.
   void setTargets(const FeaturePaths& paths);
   /// Something about these points has changed other than by the snapper's own moves.
   void noteChange(Span<Id> points);
-  /// relax() and polish() keep to three rings of wall nodes around these rows; around all targets.
+  /// relax() and polish() keep to two rings of wall nodes around these rows; around all targets.
   void workAround(std::vector<Id> rows);
   void workAroundAll();
   /// Moves the nodes of curves, or those of corners, towards their targets, nearest first (eq 4-31).
@@ -37,8 +37,8 @@ class FeatureSnapper {
   /// Smooths free wall nodes along the geometry, then the lower ends of their prism edges, then the points
   /// below.
   void relax();
-  /// As relax, but a move must also improve the worst measure around the point; nodes on curves slide along
-  /// them.
+  /// As relax, but only points with a measure close to its limit move, and a move must also improve the worst
+  /// one; nodes on curves slide along them.
   void polish();
   /// Wall rows whose targets are not reached.
   std::vector<Id> missed() const;
@@ -64,7 +64,9 @@ class FeatureSnapper {
   void snapNode(Id row);
   bool crowdsPath(Id row, const Vec3& at) const;
   bool tryMove(Id row, const Vec3& to, double tolerance);
-  bool staysNear(Id row, const Vec3& to, double limit) const;
+  bool staysNear(Id row, const Vec3& from, const Vec3& to, double limit) const;
+  bool canReach(Id row) const;
+  bool improveNear(Id row, const Vec3& to, double badness);
   double deviation(Id row, const Vec3& at, double enough) const;
   Vec3 wallNormal(Id row) const;
   Vec3 neighbourMean(Id point) const;

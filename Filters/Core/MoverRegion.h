@@ -13,6 +13,8 @@ namespace pm {
 struct MoverRegion {
   /// movable: the points that may move; null for all of them.
   MoverRegion(const PolyMesh& mesh, const std::vector<Id>* movable);
+  /// Boundary faces have been cut or merged (see WallCuts); points, cells and internal faces are as before.
+  void renewBoundary(const PolyMesh& mesh);
 
   std::vector<Id> pointSlot;       // #P of a movable point, else kNone
   std::vector<Id> faceSlot;        // #F of a face of a cell of theirs, else kNone

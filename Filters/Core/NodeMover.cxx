@@ -100,6 +100,24 @@ NodeMover::NodeMover(PolyMesh& mesh, const QualityLimits& limits, MoverRegion re
   forEachFace([&](Id f, Relation& s) { s = relationNow(f); });
 }
 
+void NodeMover::wallFacesChanged(const std::vector<Id>& cells) {
+  region_.renewBoundary(mesh_);
+  faces_.resize(region_.faces);  // those of internal faces stay
+  const auto forEachBoundaryFace = [&](const auto& body) {
+    tbb::parallel_for(mesh_.internalFaces(), mesh_.faceCount(), [&](Id f) {
+      if (region_.faceSlot[f] != kNone) body(f, face(f));
+    });
+  };
+  forEachBoundaryFace([&](Id f, Shape& s) { s = shapeNow(f); });
+  for (Id c : cells)
+    if (region_.cellSlot[c] != kNone && !region_.isRim(c)) cell(c) = cellNow(c);
+  forEachBoundaryFace([&](Id f, Relation& s) { s = relationNow(f); });
+  for (Id c : cells)
+    if (region_.cellSlot[c] != kNone && !region_.isRim(c))
+      for (Id f : facesOfCell(c))
+        if (isInternal(f)) static_cast<Relation&>(face(f)) = relationNow(f);
+}
+
 // The rim's other faces have no slots.
 void NodeMover::measureRim() {
   const Csr<Id> rimFaces = facesOfSlots(mesh_, region_.cellSlot, region_.cells, region_.cellsAndRim);

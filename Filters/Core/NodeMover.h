@@ -52,7 +52,8 @@ const char* describe(Refusal refusal);
 
 class NodeMover {
  public:
-  /// Points move in place. The topology must not change while the mover lives.
+  /// Points move in place. The topology must not change while the mover lives, but for what
+  /// wallFacesChanged() is told of.
   /// A monitor makes forEach() stop soon after an abort.
   NodeMover(PolyMesh& mesh, const QualityLimits& limits, const Monitor* monitor = nullptr)
       : NodeMover(mesh, limits, MoverRegion(mesh, nullptr), monitor) {}
@@ -60,6 +61,9 @@ class NodeMover {
   NodeMover(PolyMesh& mesh, const QualityLimits& limits, const std::vector<Id>& movable,
             const Monitor* monitor = nullptr)
       : NodeMover(mesh, limits, MoverRegion(mesh, &movable), monitor) {}
+
+  /// Wall faces of these cells have been cut or merged (see WallCuts).
+  void wallFacesChanged(const std::vector<Id>& cells);
 
   /// Moves p to target (its fixed coordinates stay); true when kept.
   bool move(Id p, const Vec3& target) { return tryMove(p, target) == Refusal::None; }
@@ -81,6 +85,11 @@ class NodeMover {
   bool improve(Id p, const Vec3& target, double badness) {
     return attempt(&p, &target, 1, badness) == Refusal::None;
   }
+  /// The same, and only if accept() agrees; see moveIf().
+  template <class Accept>
+  bool improveIf(Id p, const Vec3& target, double badness, const Accept& accept) {
+    return attempt(&p, &target, 1, badness, std::cref(accept)) == Refusal::None;
+  }
   /// Moves several points at once, all or none.
   bool moveTogether(const std::vector<Id>& points, const std::vector<Vec3>& targets) {
     return attempt(points.data(), targets.data(), points.size(), kAny) == Refusal::None;
@@ -88,6 +97,11 @@ class NodeMover {
   template <std::size_t N>
   bool moveTogether(const Id (&points)[N], const Vec3 (&targets)[N]) {
     return attempt(points, targets, N, kAny) == Refusal::None;
+  }
+  /// The same, and only if accept() agrees; see moveIf().
+  template <std::size_t N, class Accept>
+  bool moveTogetherIf(const Id (&points)[N], const Vec3 (&targets)[N], const Accept& accept) {
+    return attempt(points, targets, N, kAny, std::cref(accept)) == Refusal::None;
   }
   bool improveTogether(const std::vector<Id>& points, const std::vector<Vec3>& targets);
   /// Are all measures around p within the limits?

@@ -19,13 +19,19 @@ namespace {
 
 constexpr int kPolishSweeps = 2;
 
-/// The stage's state. Its mover and all that knows the wall's faces are made anew when faces are cut.
+/// The stage's state. What knows the wall's faces is brought up to date when faces are cut.
 class Resolver {
  public:
   Resolver(PolyMesh& mesh, const DistanceField& field, const FeatureGraph& graph,
            const ResolveFeaturesOptions& options, Monitor& monitor)
-      : mesh_(mesh), field_(field), graph_(graph), options_(options), monitor_(monitor) {
-    renew();
+      : mesh_(mesh),
+        field_(field),
+        graph_(graph),
+        options_(options),
+        monitor_(monitor),
+        wall_(wallSurface(mesh)),
+        mover_(mesh, options.limits, pointsNearWall(mesh, 1), &monitor) {
+    snapper_.emplace(mover_, wall_, field_, graph_, height_);
     for (Id p : wall_.nodes)
       height_.push_back(mesh.base[p] == kNone ? 0.0 : (mesh.points[p] - mesh.points[mesh.base[p]]).norm());
   }
@@ -38,6 +44,7 @@ class Resolver {
       setTargets(history);
       snapper_->snap(false);
       snapper_->snap(true);
+      snapper_->workAround(snapper_->missed());
       snapper_->relax();
       snapper_->force();
       if (snapper_->missed().empty()) break;
@@ -60,42 +67,48 @@ class Resolver {
     monitor_.check(0.85, "fitting faces");
     const auto isKept = [&](Id a, Id b) { return isOnFeature(a, b); };
     for (;;) {
-      const std::vector<WallMerge> merges = needlessCuts(*mover_, field_, isKept);
+      const std::vector<WallMerge> merges = needlessCuts(mover_, field_, isKept);
       if (merges.empty()) break;
       merge(merges);
     }
-    cut(fittingCuts(*mover_, field_));
-    fitWall(*mover_, wall_, field_, fitRoles());
+    cut(fittingCuts(mover_, field_));
+    fitWall(mover_, wall_, field_, fitRoles());
   }
 
   const WallSurface& wall() const { return wall_; }
   ResolveFeaturesReport report() const;
 
  private:
-  void renew() {
+  /// Of the cells behind these faces, wall faces have been cut or merged.
+  void renew(const std::vector<Id>& cells) {
     wall_ = wallSurface(mesh_);
-    mover_.emplace(mesh_, options_.limits, pointsNearWall(mesh_, 1), &monitor_);
-    if (!snapper_) snapper_.emplace(*mover_, wall_, field_, graph_, height_);
+    mover_.wallFacesChanged(cells);
   }
   void cut(const std::vector<WallCut>& cuts) {
     if (cuts.empty()) return;
-    for (const WallCut& c : cuts) snapper_->noteChange(mesh_.faces[c.face]);
+    std::vector<Id> cells;
+    for (const WallCut& c : cuts) {
+      snapper_->noteChange(mesh_.faces[c.face]);
+      cells.push_back(mesh_.owner[c.face]);
+    }
     const std::vector<WallCut> made = cutWallFaces(mesh_, cuts);
-    renew();
+    renew(cells);
     for (;;) {
-      const std::vector<WallMerge> undo = cutsToUndo(*mover_, made);
+      const std::vector<WallMerge> undo = cutsToUndo(mover_, made);
       if (undo.empty()) return;
       merge(undo);
     }
   }
   void merge(const std::vector<WallMerge>& merges) {
+    std::vector<Id> cells;
+    for (const WallMerge& m : merges) cells.push_back(mesh_.owner[m.first]);
     mergeWallFaces(mesh_, merges);
-    renew();
+    renew(cells);
   }
   void setTargets(const PathHistory& history) {
     FeaturePathOptions options;
     options.sees = [&](Id p, const Vec3& place) { return sees(p, place); };
-    options.canCut = [&](const WallCut& c) { return mover_->cutHolds(c); };
+    options.canCut = [&](const WallCut& c) { return mover_.cutHolds(c); };
     const FeaturePaths paths = traceFeatures(mesh_, wall_, graph_, options, history);
     cut(paths.cuts);
     snapper_->setTargets(paths);
@@ -111,7 +124,7 @@ class Resolver {
   Monitor& monitor_;
   std::vector<double> height_;  // #W prism edges at the start
   WallSurface wall_;
-  std::optional<NodeMover> mover_;
+  NodeMover mover_;
   std::optional<FeatureSnapper> snapper_;
   std::vector<MissedTarget> missed_;
 };

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <numeric>
 
 namespace pm {
 namespace {
@@ -13,16 +13,17 @@ namespace {
 // In units of the finest cell: how far a node may leave the geometry, and the distance beyond which a point's
 // error is no chord's but a feature's that no shift of nodes would mend.
 constexpr double kMostShift = 0.045, kMostChord = 0.12, kFar = 0.05;
-constexpr int kFitSweeps = 1, kSearchSweeps = 5;
+constexpr int kSearchSweeps = 2;  // a third finds a better place for one node in two hundred
 // Search along the surface: steps in length scales, and the gain that makes a new place worth it.
 constexpr double kSteps[] = {0.5, 0.25, 0.1};
 constexpr double kGain = 0.95;
 constexpr std::size_t kMostPoints = 48;
 
 /// The representative points around a node: itself, the middles of its edges on the wall, the centres of its
-/// faces.
+/// faces; and what of the geometry is closest to them.
 struct Around {
   std::array<Vec3, kMostPoints> points;
+  std::array<Closest, kMostPoints> found;
   std::size_t count = 0;
   void add(const Vec3& p) {
     if (count < kMostPoints) points[count++] = p;
@@ -43,12 +44,20 @@ class WallFitter {
     Vec3 n = mover_.areaVector(wall_.faces[row]);
     if (!(n.norm() > 0)) return;
     n.normalize();
-    double lowest = 0, highest = 0, own = 0;
-    const double before = look(p, n, lowest, highest, own);
+    Around at = around(p);
+    const double before = look(at);
+    double lowest = 0, highest = 0;
+    for (std::size_t i = 0; i < at.count; ++i) {
+      const Vec3 r = at.found[i].point - at.points[i];
+      if (r.norm() / unit_ >= kMostChord) continue;
+      lowest = std::min(lowest, r.dot(n));
+      highest = std::max(highest, r.dot(n));
+    }
+    const double own = (at.found[0].point - at.points[0]).dot(n);
     const double shift =
         std::clamp(0.5 * (lowest + highest), own - kMostShift * unit_, own + kMostShift * unit_);
     if (std::abs(shift) < 0.002 * unit_) return;
-    mover_.moveIf(p, mover_.point(p) + shift * n, [&] { return look(p, before) < before; });
+    mover_.moveIf(p, mover_.point(p) + shift * n, [&] { return isBelow(before, p, at); });
   }
 
   // Maximum approximation (4.7.5): where a face stays off the geometry, often at an edge that found no path,
@@ -57,7 +66,8 @@ class WallFitter {
     const Id row = wall_.rowOf[p];
     if (!mover_.worthTrying(p, searchTried_[row])) return;
     const Vec3 n = mover_.areaVector(wall_.faces[row]);
-    double best = look(p);
+    Around at = around(p);
+    double best = look(at);
     if (!(n.norm() > 0) || best < std::pow(kFar, 4)) return;
     const Vec3 u = n.unitOrthogonal(), v = n.normalized().cross(u);
     for (double step : kSteps)
@@ -65,12 +75,10 @@ class WallFitter {
         const double angle = k * 0.25 * 3.14159265358979323846;
         const Vec3 to =
             mover_.point(p) + step * wall_.scale[row] * (std::cos(angle) * u + std::sin(angle) * v);
-        double now = best;
-        if (mover_.moveIf(p, field_.closest(to).point, [&] {
-              now = look(p, kGain * best);
-              return now < kGain * best;
-            }))
-          best = now;
+        if (!mover_.moveIf(p, field_.closest(to).point, [&] { return isBelow(kGain * best, p, at); }))
+          continue;
+        at = around(p);
+        best = look(at);
       }
   }
 
@@ -87,35 +95,40 @@ class WallFitter {
 
   // A point's capped distance to the fourth power; the sum over the points is close to the largest of them
   // but smooth.
-  double weigh(const Vec3& r) const {
-    const double distance = std::min(r.norm() / unit_, kMostChord), squared = distance * distance;
+  double weigh(const Closest& near) const {
+    const double squared = std::min(near.distance2 / (unit_ * unit_), kMostChord * kMostChord);
     return squared * squared;
   }
 
-  // Sum over the points around p; one that reaches `limit` may be too small.
-  double look(Id p, double limit = std::numeric_limits<double>::infinity()) const {
-    const Around at = around(p);
+  // The sum over the points; notes what is closest to each.
+  double look(Around& at) const {
     double sum = 0;
-    for (std::size_t i = 0; i < at.count && sum < limit; ++i)
-      sum += weigh(field_.closest(at.points[i]).point - at.points[i]);
+    for (std::size_t i = 0; i < at.count; ++i) {
+      at.found[i] = field_.closest(at.points[i]);
+      sum += weigh(at.found[i]);
+    }
     return sum;
   }
 
-  // The sum, and the range of the points' signed distances along n (positive: the geometry lies outward).
-  double look(Id p, const Vec3& n, double& lowest, double& highest, double& own) const {
+  // Is the sum below the limit with p where it is now? The triangles found before often prove that it is; and
+  // often the points that were far away, which come first, that it is not.
+  bool isBelow(double limit, Id p, const Around& before) const {
     const Around at = around(p);
+    double most = 0;
+    for (std::size_t i = 0; i < at.count && most < limit; ++i)
+      most += weigh(field_.model().closestOnTriangle(at.points[i], before.found[i].triangle));
+    if (most < limit) return true;
+    std::array<std::size_t, kMostPoints> order;
+    const auto end = order.begin() + static_cast<std::ptrdiff_t>(at.count);
+    std::iota(order.begin(), end, 0);
+    std::sort(order.begin(), end, [&](std::size_t i, std::size_t j) {
+      const double x = before.found[i].distance2, y = before.found[j].distance2;
+      return x != y ? x > y : i < j;
+    });
     double sum = 0;
-    for (std::size_t i = 0; i < at.count; ++i) {
-      const Vec3 r = field_.closest(at.points[i]).point - at.points[i];
-      sum += weigh(r);
-      const double along = r.dot(n);
-      if (i == 0) own = along;
-      if (r.norm() / unit_ < kMostChord) {
-        lowest = std::min(lowest, along);
-        highest = std::max(highest, along);
-      }
-    }
-    return sum;
+    for (auto i = order.begin(); i != end && sum < limit; ++i)
+      sum += weigh(field_.model().closest(at.points[*i], before.found[*i]));
+    return sum < limit;
   }
 
   NodeMover& mover_;
@@ -137,7 +150,7 @@ void fitWall(NodeMover& mover, const WallSurface& wall, const DistanceField& fie
   const MoveBlocks freeGroups = mover.blocks(free), searchGroups = mover.blocks(searching);
   WallFitter fitter(mover, wall, field);
   const auto shift = [&] { mover.forEach(freeGroups, [&](Id p) { fitter.fit(p); }); };
-  for (int sweep = 0; sweep < kFitSweeps; ++sweep) shift();
+  shift();
   for (int sweep = 0; sweep < kSearchSweeps; ++sweep) {
     mover.forEach(searchGroups, [&](Id p) { fitter.search(p); });
     shift();

@@ -206,4 +206,37 @@ TEST(WallCutTrials, SaysNoOfCutsAwayFromItsPoints) {
   EXPECT_GT(near, 0u);
 }
 
+/// What two movers know of a mesh, as far as their callers can see.
+void expectSame(const NodeMover& mover, const NodeMover& other) {
+  const auto listed = [](Span<Id> ids) { return std::vector<Id>(ids.begin(), ids.end()); };
+  for (Id p = 0; p < static_cast<Id>(mover.mesh().points.size()); ++p) {
+    ASSERT_EQ(listed(mover.facesOf(p)), listed(other.facesOf(p))) << "point " << p;
+    ASSERT_EQ(mover.badness(p), other.badness(p)) << "point " << p;
+    for (Id c : mover.cellsOf(p)) ASSERT_EQ(listed(mover.facesOfCell(c)), listed(other.facesOfCell(c)));
+  }
+}
+
+TEST(WallCutTrials, AMoverKeepsUpWithCutsAndMerges) {
+  std::size_t made = 0;
+  for (unsigned seed = 0; seed < 12; ++seed) {
+    PolyMesh mesh = seed % 2 == 0 ? layer(seed) : shaken(seed);
+    const std::vector<Id> movable = pointsNearWall(mesh, static_cast<int>(seed % 3));
+    NodeMover mover(mesh, {}, movable);
+    std::vector<WallCut> cuts;
+    forEachDiagonal(mesh, 5, [&](const WallCut& cut) { cuts.push_back(cut); });
+    std::vector<Id> cells;
+    for (const WallCut& cut : cuts) cells.push_back(mesh.owner[cut.face]);
+    made += cutWallFaces(mesh, cuts).size();
+    mover.wallFacesChanged(cells);
+    expectSame(mover, NodeMover(mesh, {}, movable));
+    std::vector<WallMerge> merges = wallPairs(mesh);
+    cells.clear();
+    for (const WallMerge& merge : merges) cells.push_back(mesh.owner[merge.first]);
+    mergeWallFaces(mesh, merges);
+    mover.wallFacesChanged(cells);
+    expectSame(mover, NodeMover(mesh, {}, movable));
+  }
+  EXPECT_GT(made, 100u);
+}
+
 }  // namespace
