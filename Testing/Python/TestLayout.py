@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The layout of the sources: five places a filter, short files and functions, nothing unfinished, no machine's paths."""
+"""The layout of the sources: five places a filter, short files and functions, nothing unfinished, no machine's paths;
+and of the documents: no dead link, no picture that is missing or that no page shows."""
 import ast
 import os
 import re
@@ -17,6 +18,8 @@ LONGEST_FILE = 500
 LONGEST_FUNCTION = 60
 # Spelt so that this file does not hold the words itself.
 UNFINISHED = re.compile(r"\b(TO" + r"DO|FIX" + r"ME|X" + r"XX|HA" + r"CK)\b|not (yet )?impl" + r"emented")
+LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
+NAMED_FILE = re.compile(r"(?<![\w/])((?:Docs|Testing|Filters|XML|Plugin|\.ci)/[\w./]*\w\.(?:py|sh|md|png|stl|xml|cxx|h))\b")
 MACHINE_PATHS = re.compile(r"(?<![\w.}])/(ro" + r"ot|ho" + r"me|wo" + r"rk|tm" + r"p)/\w")
 
 
@@ -34,6 +37,30 @@ def sources():
 def read(path):
     with open(os.path.join(ROOT, path), encoding="utf-8") as file:
         return file.read()
+
+
+def pages():
+    """Paths of the documents, relative to the root."""
+    return [path for path in sources() if path.endswith(".md")]
+
+
+def prose(text):
+    """A page without its blocks of code."""
+    return re.sub(r"^```.*?^```", "", text, flags=re.M | re.S)
+
+
+def links(page):
+    """(path relative to the root, heading or "") of each link of a page that leads into the project."""
+    for target in LINK.findall(prose(read(page))):
+        if "://" not in target:
+            path, _, heading = target.partition("#")
+            yield os.path.normpath(os.path.join(os.path.dirname(page), path)) if path else page, heading
+
+
+def headings(page):
+    """The names by which links find a page's headings."""
+    found = re.findall(r"^#+ (.+)$", prose(read(page)), re.M)
+    return {re.sub(r"[^\w\- ]", "", re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", text)).lower().replace(" ", "-") for text in found}
 
 
 def cxx_functions(text):
@@ -121,6 +148,37 @@ class Layout(unittest.TestCase):
         named = [f"{path}:{number}: {line.strip()}" for path in sources()
                  for number, line in enumerate(read(path).splitlines(), 1) if MACHINE_PATHS.search(line)]
         self.assertEqual(named, [])
+
+    def test_links_lead_somewhere(self):
+        dead, seen = [], 0
+        for page in pages():
+            for path, heading in links(page):
+                seen += 1
+                if not os.path.exists(os.path.join(ROOT, path)) or heading and heading not in headings(path):
+                    dead.append(f"{page}: {path}" + (f"#{heading}" if heading else ""))
+        self.assertGreater(seen, 100)  # the scan sees links
+        self.assertEqual(dead, [])
+
+    def test_named_files_exist(self):
+        """Those that a page names with their folder, as its commands do."""
+        absent = [f"{page}: {path}" for page in pages() for path in NAMED_FILE.findall(read(page))
+                  if not os.path.exists(os.path.join(ROOT, path)) and "Example" not in os.path.basename(path)]
+        self.assertEqual(absent, [])
+
+    def test_every_picture_is_shown(self):
+        shown = {path for page in pages() for path, _ in links(page)}
+        pictures = {f"Docs/Images/{name}" for name in os.listdir(os.path.join(ROOT, "Docs", "Images"))}
+        self.assertGreater(len(pictures), 20)
+        self.assertEqual(sorted(pictures - shown), [])
+
+    def test_every_page_is_reached_from_the_readme(self):
+        reached, ways = set(), ["README.md"]
+        while ways:
+            page = ways.pop()
+            if page not in reached:
+                reached.add(page)
+                ways += [path for path, _ in links(page) if path.endswith(".md") and os.path.exists(os.path.join(ROOT, path))]
+        self.assertEqual(sorted(set(pages()) - reached - {"CHANGELOG.md"}), [])
 
     def test_licence_line(self):
         without = [path for path in sources() if path.endswith((".h", ".cxx", ".py", ".sh", ".cmake"))
