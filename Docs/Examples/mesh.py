@@ -339,7 +339,7 @@ def add_far_field(pm, runner, options, mesh):
     far = pm.vtkFarField()
     far.SetExtendZmin(False)
     if options.far_sphere:
-        far.SetShape(far.SPHERE)
+        far.SetShape(1)  # a sphere
         far.SetRadius(options.far_sphere)
     else:
         far.SetDistance(options.far_box)

@@ -135,6 +135,15 @@ class MeshCommand(unittest.TestCase):
             self.assertEqual(head[1:4], b"PNG")
             self.assertEqual([int.from_bytes(head[i:i + 4], "big") for i in (16, 20)], [1400, 1000])
 
+    def test_far_field(self):
+        for option, size, patch in (("--far-box", "1", "xmax"), ("--far-sphere", "2", "far")):
+            done = mesh(CLEAN, "-o", self.out, "--domain", "-0.1", "-0.15", "-0.15", "0.25", "0.15", "0.15", "--feature-size", "0.01",
+                        option, size)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertRegex(done.stdout, rf"{patch} +[\d,]+ faces \(domain side\)")
+            volume = float(re.search(r"total volume +(\S+)", done.stdout).group(1))
+            self.assertGreater(volume, 2.0)
+
     def test_gzipped_input_gives_the_same_mesh(self):
         packed = self.path("packed.stl.gz")
         with open(CLEAN, "rb") as plain, gzip.open(packed, "wb") as file:
