@@ -9,14 +9,13 @@ import mesh_pictures as pictures
 import numpy
 import vtkmodules.vtkCommonCore  # noqa: F401  (VTK's core must load before modules built on it)
 from projection_mesher import ProjectionMesherFilters as pm
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
-from vtkmodules.vtkFiltersCore import vtkExtractEdges
 
 STATIONS = 60  # on each of the aerofoil's sides
 ANGLE = 8.0  # degrees
-SIZE = 0.01  # of the smallest cells; the chord is 1
+SIZE = 0.0025  # of the smallest cells, at the trailing edge; the chord is 1
 SHOWN = numpy.array(((-0.1, -0.25, 0), (1.1, 0.25, 0)))
 
 
@@ -47,31 +46,8 @@ def thickened(outline, low, high):
     return surface
 
 
-def draw(section, path):
-    """The front of the planar mesh, layer cells in another colour; returns how many there are."""
-    boundary = section.GetOutputDataObject(1)
-    names = boundary.GetFieldData().GetAbstractArray("PatchNames")
-    front = pictures.only_patches(boundary, [names.GetNumberOfValues() - 1])
-    layers = vtk_to_numpy(section.GetOutput().GetCellData().GetArray("Layer")) > 0
-    # Faces of the front are in the order of their cells.
-    front.GetCellData().SetScalars(numpy_to_vtk(layers.astype(numpy.float32), deep=True))
-    faces = pictures.actor_of(front, pictures.lookup(pictures.CELL_COLOURS, 2))
-    edges = vtkExtractEdges()
-    edges.SetInputData(front)
-    edges.Update()
-    lines = pictures.actor_of(edges.GetOutput())
-    lines.GetProperty().SetColor(*pictures.LINES)
-    lines.GetProperty().SetLineWidth(1.2)
-    lines.SetPosition(0, 0, SIZE)
-    for actor in (faces, lines):
-        actor.GetProperty().LightingOff()
-    renderer = pictures.new_renderer([faces, lines])
-    renderer.GetActiveCamera().ParallelProjectionOn()
-    pictures.save(renderer, SHOWN, (0, 0, 1), (0, 1, 0), path)
-    return int(layers.sum())
-
-
-def main(folder):
+def section_of_mesh():
+    """The planar mesh of the air around the aerofoil."""
     mesh = pm.vtkProjectionMesh()
     mesh.SetInputData(thickened(aerofoil(), -1, 1))
     mesh.SetFeatureSize(SIZE)
@@ -83,9 +59,31 @@ def main(folder):
     section = pm.vtkPlanarMesh()
     section.SetInputConnection(mesh.GetOutputPort())
     section.Update()
-    layers = draw(section, os.path.join(folder, "PlanarMesh.png"))
-    print(f"{mesh.GetOutput().GetNumberOfCells()} cells, in the section {section.GetOutput().GetNumberOfCells()}, "
-          f"of those {layers} in layers")
+    return section
+
+
+def front_faces(section, layers):
+    """The faces of the patch front, coloured by whether their cells are layer cells; they are in the order of the cells."""
+    boundary = section.GetOutputDataObject(1)
+    names = boundary.GetFieldData().GetAbstractArray("PatchNames")
+    front = pictures.only_patches(boundary, [names.GetNumberOfValues() - 1])
+    pictures.colour_cells(front, layers)
+    return front
+
+
+def draw(front, path):
+    faces, lines = pictures.section_actors(front)
+    lines.SetPosition(0, 0, SIZE)
+    renderer = pictures.new_renderer([faces, lines])
+    renderer.GetActiveCamera().ParallelProjectionOn()
+    pictures.save(renderer, SHOWN, (0, 0, 1), (0, 1, 0), path)
+
+
+def main(folder):
+    section = section_of_mesh()
+    layers = vtk_to_numpy(section.GetOutput().GetCellData().GetArray("Layer")) > 0
+    draw(front_faces(section, layers), os.path.join(folder, "PlanarMesh.png"))
+    print(f"{section.GetOutput().GetNumberOfCells()} cells, of those {int(layers.sum())} in layers")
 
 
 if __name__ == "__main__":

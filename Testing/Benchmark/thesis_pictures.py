@@ -17,6 +17,7 @@ from vtkmodules.vtkRenderingCore import vtkRenderWindow
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, "..", "..", "Docs", "Examples"))
+import figures  # noqa: E402
 import mesh_pictures as pictures  # noqa: E402
 
 SIZE = (1280, 960)
@@ -143,6 +144,7 @@ def main(folder, images):
             renderer.SetViewport(x, y, x + 0.498, y + 0.498)
             window.AddRenderer(renderer)
         pictures.write_picture(window, os.path.join(images, name))
+        figures.fewer_colours(os.path.join(images, name))
 
 
 if __name__ == "__main__":
