@@ -235,6 +235,7 @@ class NarrowSearch {
     gap.middle = from + 0.5 * gap.width * way;
     gap.across = way;
     gap.leaf = tree_.locate(gap.middle);
+    if (gap.leaf == kNone) return;  // the geometry goes on beyond the domain, and the gap with it
     gap.triangle[0] = t;
     gap.triangle[1] = hit.triangle;
     gaps.push_back(gap);

@@ -17,9 +17,9 @@ using namespace pm::testing;
 
 constexpr double kSize = 0.05;  // edge of the finest leaves
 
-PaintFrontReport look(const Soup& soup, const PaintFrontOptions& options = {}) {
+PaintFrontReport look(const Soup& soup, const PaintFrontOptions& options = {},
+                      OctreeDecomposeOptions o = {}) {
   const auto model = soup.model();
-  OctreeDecomposeOptions o;
   o.featureSize = kSize;
   Monitor monitor;
   const Octree tree = decompose(*model, o, monitor);
@@ -81,6 +81,17 @@ TEST(NarrowPassages, AThinPlateIsNone) {
     if (thickness == 0) soup.addGrid(Vec3(0.3, 0, z), Vec3(0.71, 0, 0), Vec3(0, 1, 0), 1);
     EXPECT_TRUE(look(soup).invisible.places.empty()) << thickness << " leaves thick";
   }
+}
+
+TEST(NarrowPassages, GapsWhoseMiddleLiesBeyondTheDomainAreLeftOut) {
+  const double width = 0.5 * kSize, sideInSlot = 0.513 + 0.3 * width;
+  PaintFrontOptions options;
+  options.region = Region::Everything;
+  OctreeDecomposeOptions o;
+  o.useDomain = true;
+  o.domain = Box{Vec3(-0.5, -0.5, sideInSlot - 32 * kSize), Vec3(2.7, 1.1, sideInSlot)};
+  const PaintFrontReport report = look(slot(width), options, o);
+  for (const NarrowCell& cell : report.invisible.cells) EXPECT_LE(cell.point[2], sideInSlot);
 }
 
 TEST(NarrowPassages, ADuctLeadsToTheRoomBehindIt) {
