@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The pictures of the six stages' pages, all of the dirty pipe junction: stage_pictures.py FOLDER [STAGE ...] runs the stages at
-5 mm and draws after each the wall, coloured by patch, and a section; for Octree Decompose the octree and the geometry in it;
-for Boundary Refine five layers at 3 mm, with corners enlarged. Run with pvpython and build/lib/python3/dist-packages on
+"""The pictures of the pages of the six stages and of Mesh Validity, all of the dirty pipe junction: stage_pictures.py FOLDER
+[STAGE ...] runs the stages at 5 mm and draws after each the wall, coloured by patch, and a section; for Octree Decompose the
+octree and the geometry in it; for Boundary Refine five layers at 3 mm, with corners enlarged; for MeshValidity two measures. Run with pvpython and build/lib/python3/dist-packages on
 PYTHONPATH; without a display, under xvfb-run."""
 import os
 import sys
@@ -12,6 +12,7 @@ import numpy as np
 from figures import Y, Panel
 from projection_mesher import ProjectionMesherFilters as pm
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkLookupTable
 from vtkmodules.vtkFiltersCore import vtkCellCenters, vtkThreshold
 from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
 
@@ -82,14 +83,43 @@ def layers():
                    figures.square("where the pipes meet", grid, Y, PLANE, concave)], (1, 1))]
 
 
+def measured(cut, name, limit):
+    """The polygons of a section from white, 0, to red, the limit."""
+    table = vtkLookupTable()
+    table.SetHueRange(0, 0)
+    table.SetSaturationRange(0, 1)
+    table.SetValueRange(0.97, 0.8)
+    table.SetTableRange(0, limit)
+    table.Build()
+    lines = pictures.section_actors(cut)[1]
+    shown = pictures.actor_of(cut, table)
+    shown.GetMapper().SetScalarModeToUseCellFieldData()
+    shown.GetMapper().SelectColorArray(name)
+    shown.GetProperty().LightingOff()
+    lines.GetProperty().SetLineWidth(1)
+    return [shown, lines]
+
+
+def validity():
+    check = pm.vtkMeshValidity()
+    check.SetInputDataObject(mesh_after("ResolveFeatures", FINE)[0])
+    check.Update()
+    cut, (eye, up) = pictures.cut_grid(check.GetOutput(), Y, PLANE), figures.SQUARE[Y]
+    return [(430, [Panel(f"{name}: white 0, red {limit}{unit}", measured(cut, name, limit), eye, up, depth=0)
+                   for name, limit, unit in (("Angle", 70, " degrees"), ("Skewness", 3.8, ""))], (1, 1))]
+
+
+OTHERS = {"OctreeDecompose": octree, "BoundaryRefine": layers, "MeshValidity": validity}
+
+
 def main(folder, names):
-    for name in names or STAGES:
-        rows = octree() if name == "OctreeDecompose" else layers() if name == "BoundaryRefine" else stage(name)
+    for name in names or STAGES + ("MeshValidity",):
+        rows = OTHERS[name]() if name in OTHERS else stage(name)
         figures.draw(rows, os.path.join(folder, name + ".png"))
         print(name, flush=True)
 
 
 if __name__ == "__main__":
-    if len(sys.argv) < 2 or set(sys.argv[2:]) - set(STAGES):
+    if len(sys.argv) < 2 or set(sys.argv[2:]) - set(STAGES) - set(OTHERS):
         sys.exit(__doc__)
     main(sys.argv[1], sys.argv[2:])
