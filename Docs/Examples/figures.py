@@ -151,6 +151,22 @@ class Panel:
         return sheet
 
 
+class Key:
+    """A panel of names on their colours, from above downwards."""
+
+    def __init__(self, entries):
+        self.entries = entries
+
+    def captioned(self, size):
+        sheet = Image.new("RGB", size, tuple(round(255 * c) for c in pictures.BACKGROUND))
+        pen, font = ImageDraw.Draw(sheet), ImageFont.truetype(font_manager.findfont("DejaVu Sans"), 15)
+        for row, (name, colour) in enumerate(self.entries):
+            top = 24 + 40 * row
+            pen.rectangle((14, top, 40, top + 26), fill=tuple(round(255 * c) for c in colour), outline=(60, 60, 60))
+            pen.text((50, top + 4), name, font=font, fill=(25, 25, 25))
+        return sheet
+
+
 def pixels(window):
     window.Render()
     grab = vtkWindowToImageFilter()

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The pictures of the pages of the six stages and of Mesh Validity, all of the dirty pipe junction: stage_pictures.py FOLDER
-[STAGE ...] runs the stages at 5 mm and draws after each the wall, coloured by patch, and a section; for Octree Decompose the
-octree and the geometry in it; for Boundary Refine five layers at 3 mm, with corners enlarged; for MeshValidity two measures. Run with pvpython and build/lib/python3/dist-packages on
+"""Pictures of the filters' pages: stage_pictures.py FOLDER [NAME ...] runs the stages on the dirty pipe junction at 5 mm and draws
+after each the wall, coloured by patch, and a section; for OctreeDecompose the octree and the geometry in it, for OctreeReasons
+what made its cells small; for BoundaryRefine five layers at 3 mm, with corners enlarged; for MeshValidity two measures; for
+DetectFeatures the feature lines of two pipes pushed into each other. Run with pvpython and build/lib/python3/dist-packages on
 PYTHONPATH; without a display, under xvfb-run."""
 import os
 import sys
@@ -9,16 +10,20 @@ import sys
 import figures
 import mesh_pictures as pictures
 import numpy as np
-from figures import Y, Panel
+from figures import X, Y, Z, Panel
 from projection_mesher import ProjectionMesherFilters as pm
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkLookupTable
-from vtkmodules.vtkFiltersCore import vtkCellCenters, vtkThreshold
+from vtkmodules.vtkCommonTransforms import vtkTransform
+from vtkmodules.vtkFiltersCore import vtkAppendPolyData, vtkCellCenters, vtkThreshold, vtkTriangleFilter
+from vtkmodules.vtkFiltersGeneral import vtkTransformPolyDataFilter
 from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
+from vtkmodules.vtkFiltersSources import vtkCylinderSource
 
 JUNCTION = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Testing", "Data", "pipe_junction_dirty.stl")
 STAGES = ("OctreeDecompose", "PaintFront", "DummyLayer", "Project", "ResolveFeatures", "BoundaryRefine")
 COLOURS = [pictures.COLOURS[i] for i in (2, 0, 1, 3, 4)]  # inlet, wall, outlet1 to 3
+REASON_COLOURS = ((0.87, 0.87, 0.87),) + pictures.COLOURS[1:]
 FROM = (-0.45, -0.8, 0.4)  # where walls are looked at from
 PLANE = 0.001  # of the sections: through the middle of cells
 SIZE = 0.005
@@ -67,6 +72,64 @@ def octree():
                    Panel("half of the cells on the geometry", [touched_cells(tree.GetOutput())], (-0.35, -0.8, 0.35))], (1, 1))]
 
 
+def reasons():
+    """A section of the octree, coloured by the criterion that made each cell as small as it is."""
+    tree = pm.vtkOctreeDecompose()
+    tree.SetInputDataObject(0, figures.read_geometry(JUNCTION))
+    tree.SetFeatureSize(0.0025)
+    tree.SetCellsPerCircle(32)
+    tree.Update()
+    cut = pictures.cut_grid(tree.GetOutput(), Y, PLANE)
+    names = tree.GetOutput().GetFieldData().GetAbstractArray("RefinedByNames")
+    why = vtk_to_numpy(cut.GetCellData().GetArray("RefinedBy"))
+    present = np.unique(why)
+    pictures.colour_cells(cut, np.searchsorted(present, why))
+    eye, up = figures.SQUARE[Y]
+    section = Panel("y = 1 mm, coloured by RefinedBy", pictures.section_actors(cut, REASON_COLOURS), eye, up, depth=0)
+    key = figures.Key([(names.GetValue(int(k)), REASON_COLOURS[i]) for i, k in enumerate(present)])
+    return [(640, [section, key], (3, 1))]
+
+
+def pipe(radius, low, high, axis):
+    """An open pipe of triangles along an axis."""
+    source, turn, triangles = vtkCylinderSource(), vtkTransformPolyDataFilter(), vtkTriangleFilter()
+    source.SetRadius(radius)
+    source.SetHeight(high - low)
+    source.SetCenter(0, 0.5 * (low + high), 0)
+    source.SetResolution(60)
+    source.CappingOff()
+    move = vtkTransform()
+    if axis == X:
+        move.RotateZ(-90)
+    elif axis == Z:
+        move.RotateX(90)
+    turn.SetTransform(move)
+    turn.SetInputConnection(source.GetOutputPort())
+    triangles.SetInputConnection(turn.GetOutputPort())
+    triangles.Update()
+    return triangles.GetOutput()
+
+
+def feature_lines():
+    """Rims blue, the line along which the pipes cut each other red."""
+    both, detect = vtkAppendPolyData(), pm.vtkDetectFeatures()
+    both.AddInputData(pipe(1.0, -3, 3, X))
+    both.AddInputData(pipe(0.6, 0.0, 2.2, Z))
+    both.Update()
+    detect.SetInputData(both.GetOutput())
+    detect.OpenEdgesOn()
+    detect.Update()
+    found = detect.GetOutputDataObject(0)
+    pictures.colour_cells(found, vtk_to_numpy(found.GetCellData().GetArray("Kind")) & 16 > 0)
+    lines = pictures.actor_of(found, pictures.lookup([(0.15, 0.30, 0.75), (0.80, 0.15, 0.10)], 2))
+    lines.GetProperty().SetLineWidth(7)
+    lines.GetProperty().LightingOff()
+    body = pictures.actor_of(both.GetOutput())
+    body.GetProperty().SetColor(*figures.WALL)
+    body.GetProperty().SetOpacity(0.25)
+    return [(560, [Panel("two pipes pushed into each other", [body, lines], (-0.5, -0.8, 0.4), depth=0)], (1,))]
+
+
 def stage(name):
     grid, boundary = mesh_after(name)
     return [(430, [Panel("wall and patches", [figures.walls(boundary, colours=COLOURS)], FROM),
@@ -109,11 +172,12 @@ def validity():
                    for name, limit, unit in (("Angle", 70, " degrees"), ("Skewness", 3.8, ""))], (1, 1))]
 
 
-OTHERS = {"OctreeDecompose": octree, "BoundaryRefine": layers, "MeshValidity": validity}
+OTHERS = {"OctreeDecompose": octree, "OctreeReasons": reasons, "BoundaryRefine": layers, "MeshValidity": validity,
+          "DetectFeatures": feature_lines}
 
 
 def main(folder, names):
-    for name in names or STAGES + ("MeshValidity",):
+    for name in names or sorted(set(STAGES) | set(OTHERS)):
         rows = OTHERS[name]() if name in OTHERS else stage(name)
         figures.draw(rows, os.path.join(folder, name + ".png"))
         print(name, flush=True)
