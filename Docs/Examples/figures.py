@@ -5,6 +5,7 @@ layer cells in another colour, and pictures of several panels side by side.
 Each panel is drawn at twice its size and made smaller, which gives lines finer than a pixel; walls are darkened where little
 light gets in (ambient occlusion), so that depth is seen without shadows. Pictures have at most 256 colours: half of the bytes."""
 import itertools
+import os
 
 import mesh_pictures as pictures
 import numpy as np
@@ -194,7 +195,8 @@ def fewer_colours(path, colours=256):
 
 
 def draw(rows, path, width=1200, colours=256):
-    """A picture of rows of panels. A row is (height in pixels, panels, their parts of the width)."""
+    """A picture of rows of panels. A row is (height in pixels, panels, their parts of the width). colours: how many, 0 = all, where
+    small things in colours of their own count."""
     images, y = [], 0
     for height, panels, parts in rows:
         room, x = width - GAP * (len(panels) - 1), 0
@@ -206,15 +208,18 @@ def draw(rows, path, width=1200, colours=256):
     sheet = Image.new("RGB", (width, y - GAP), (255, 255, 255))
     for image, place in images:
         sheet.paste(image, place)
-    sheet.save(path)
-    fewer_colours(path, colours)
+    sheet.save(path, optimize=True)
+    if colours:
+        fewer_colours(path, colours)
 
 
 # ------------------------------------------------------------------------------------------------------- meshes
 def read_mesh(folder):
-    """mesh.vtu and boundary.vtp as mesh.sh leaves them in its folder."""
+    """mesh.vtu, boundary.vtp and, where it is, unresolved.vtp as mesh.sh leaves them in its folder."""
+    lost = f"{folder}/unresolved.vtp"
     return (pictures.read(vtkXMLUnstructuredGridReader(), f"{folder}/mesh.vtu"),
-            pictures.read(vtkXMLPolyDataReader(), f"{folder}/boundary.vtp"))
+            pictures.read(vtkXMLPolyDataReader(), f"{folder}/boundary.vtp"),
+            pictures.read(vtkXMLPolyDataReader(), lost) if os.path.exists(lost) else None)
 
 
 def read_geometry(path):

@@ -2,7 +2,7 @@
 """Pictures of the filters' pages: stage_pictures.py FOLDER [NAME ...] runs the stages on the dirty pipe junction at 5 mm and draws
 after each the wall, coloured by patch, and a section; for OctreeDecompose the octree and the geometry in it, for OctreeReasons
 what made its cells small; for BoundaryRefine five layers at 3 mm, with corners enlarged; for MeshValidity two measures; for
-DetectFeatures the feature lines of two pipes pushed into each other. Run with pvpython and build/lib/python3/dist-packages on
+DetectFeatures the feature lines of two pipes pushed into each other; for Regions a body with three chambers. Run with pvpython and build/lib/python3/dist-packages on
 PYTHONPATH; without a display, under xvfb-run."""
 import os
 import sys
@@ -13,7 +13,8 @@ import numpy as np
 from figures import X, Y, Z, Panel
 from projection_mesher import ProjectionMesherFilters as pm
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkLookupTable
+from vtkmodules.vtkCommonCore import vtkLookupTable, vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkCommonTransforms import vtkTransform
 from vtkmodules.vtkFiltersCore import vtkAppendPolyData, vtkCellCenters, vtkThreshold, vtkTriangleFilter
 from vtkmodules.vtkFiltersGeneral import vtkTransformPolyDataFilter
@@ -130,6 +131,54 @@ def feature_lines():
     return [(560, [Panel("two pipes pushed into each other", [body, lines], (-0.5, -0.8, 0.4), depth=0)], (1,))]
 
 
+def rooms(axes, inside):
+    """The faces between the bricks of a grid of planes that are inside and those that are not; inside: of a brick's middle."""
+    middles = [0.5 * (a[1:] + a[:-1]) for a in axes]
+    full = np.pad(np.array([[[inside(x, y, z) for z in middles[Z]] for y in middles[Y]] for x in middles[X]]), 1)
+    surface, points, quads = vtkPolyData(), vtkPoints(), vtkCellArray()
+    for axis in range(3):
+        for at in np.argwhere(np.diff(full.astype(int), axis=axis)):
+            low = at - 1  # of the padding, but along the axis the face is at the brick's upper end
+            low[axis] += 1
+            corners = np.repeat(low[None], 4, axis=0)
+            others = [a for a in range(3) if a != axis]
+            corners[1:3, others[0]] += 1
+            corners[2:4, others[1]] += 1
+            if min(low[a] for a in others) >= 0:
+                quads.InsertNextCell(4, [points.InsertNextPoint(*(axes[a][c[a]] for a in range(3))) for c in corners])
+    surface.SetPoints(points)
+    surface.SetPolys(quads)
+    return surface
+
+
+def regions():
+    """Three chambers, each a zone; the slot between two of them is too low for the cells."""
+    size, slot, plane = 0.1, (0.97, 1.03), 0.93
+    axes = [np.array(a) for a in ((0.01, 2.01, 2.71, 3.91, 4.31, 5.11), (0, 0.6, 1.4, 2.0), (0, slot[0], slot[1], 2.0))]
+    body = rooms(axes, lambda x, y, z: x < 2.01 or 2.71 < x < 3.91 or x > 4.31 or
+                 (2.01 < x < 2.71 and 0.6 < y < 1.4 and slot[0] < z < slot[1]))
+    mesh = pm.vtkProjectionMesh()
+    mesh.SetInputData(body)
+    mesh.SetFeatureSize(size)
+    mesh.SetSurfaceSize(size)
+    mesh.SetRegion(3)  # all enclosed ones
+    mesh.Update()
+    cut = pictures.cut_grid(mesh.GetOutputDataObject(0), Y, plane)
+    pictures.colour_cells(cut, vtk_to_numpy(cut.GetCellData().GetArray("Zone")))
+    narrow = pictures.actor_of(mesh.GetOutputDataObject(3))
+    narrow.GetProperty().SetColor(0.80, 0.15, 0.10)
+    narrow.GetProperty().SetPointSize(12)
+    line = figures.cut_line(body, Y, plane, pictures.LINES)
+    for actor in (narrow, line):
+        actor.AddPosition(0, -1, 0)
+    names = mesh.GetOutputDataObject(0).GetFieldData().GetAbstractArray("ZoneNames")
+    colours = [pictures.COLOURS[i] for i in (3, 4, 2)]
+    eye, up = figures.SQUARE[Y]
+    shown = pictures.section_actors(cut, colours) + [line, narrow]
+    key = figures.Key([(names.GetValue(i), colours[i]) for i in range(3)] + [("too narrow", (0.80, 0.15, 0.10))])
+    return [(430, [Panel("section, coloured by Zone", shown, eye, up, depth=0), key], (5, 1))]
+
+
 def stage(name):
     grid, boundary = mesh_after(name)
     return [(430, [Panel("wall and patches", [figures.walls(boundary, colours=COLOURS)], FROM),
@@ -173,7 +222,7 @@ def validity():
 
 
 OTHERS = {"OctreeDecompose": octree, "OctreeReasons": reasons, "BoundaryRefine": layers, "MeshValidity": validity,
-          "DetectFeatures": feature_lines}
+          "DetectFeatures": feature_lines, "Regions": regions}
 
 
 def main(folder, names):
