@@ -5,6 +5,7 @@ build/lib/python3/dist-packages on PYTHONPATH; without a display, under xvfb-run
 import os
 import sys
 
+import figures
 import mesh_pictures as pictures
 import numpy
 import vtkmodules.vtkCommonCore  # noqa: F401  (VTK's core must load before modules built on it)
@@ -62,6 +63,7 @@ def draw(grid, path):
     renderer = pictures.new_renderer([cells] + pictures.legend(names, present, table))
     renderer.GetActiveCamera().ParallelProjectionOn()
     pictures.save(renderer, vtk_to_numpy(skin.GetPoints().GetData()), (-0.25, -1, 0.2), (0, 0, 1), path)
+    figures.fewer_colours(path)
 
 
 def main(geometry, folder):
