@@ -4,6 +4,7 @@ import glob
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -45,6 +46,20 @@ class UserGuide(unittest.TestCase):
         text = read("README.md") + read("Docs", "UserGuide.md")
         names = {name for action in mesh.parser()._actions for name in action.option_strings if name.startswith("--")}
         self.assertEqual({name for name in names if name not in text}, {"--output"})  # told as -o
+
+    def test_pictures(self):
+        """Those that need no mesh of the user's: one of a stage, one of the gallery."""
+        if not shutil.which("xvfb-run"):
+            self.skipTest("pictures need xvfb-run")
+        with tempfile.TemporaryDirectory() as folder:
+            for script, words, picture in (("stage_pictures.py", [folder, "PaintFront"], "PaintFront.png"),
+                                           ("gallery.py", ["no meshes", folder, "aerofoil"], "gallery_aerofoil.png")):
+                done = subprocess.run(["xvfb-run", "-a", "pvpython", os.path.join(ROOT, "Docs", "Examples", script), *words],
+                                      capture_output=True, text=True, check=False)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                with open(os.path.join(folder, picture), "rb") as drawn, \
+                        open(os.path.join(ROOT, "Docs", "Images", picture), "rb") as shown:
+                    self.assertEqual(drawn.read(24), shown.read(24))  # a PNG of the same width and height
 
     def test_script(self):
         code, = re.findall(r"^```python\n(.*?)^```", read("Docs", "UserGuide.md"), re.M | re.S)
