@@ -17,8 +17,6 @@
 namespace pm {
 namespace {
 
-constexpr int kPolishSweeps = 2;
-
 /// The stage's state. What knows the wall's faces is brought up to date when faces are cut.
 class Resolver {
  public:
@@ -55,10 +53,8 @@ class Resolver {
     snapper_->workAroundAll();
     missed_ = snapper_->releaseMissed();
     snapper_->relax();
-    for (int sweep = 0; sweep < kPolishSweeps; ++sweep) {
-      monitor_.check(0.8 + 0.1 * sweep / kPolishSweeps, "polishing");
-      snapper_->polish();
-    }
+    monitor_.check(0.8, "polishing");
+    snapper_->polish();
   }
 
   /// Brings faces nearer to the geometry: by cuts, then by moves of their nodes. Cuts that brought nothing
