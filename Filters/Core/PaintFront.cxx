@@ -295,10 +295,9 @@ void noteInvisible(const NarrowPassages& invisible, const Octree& tree, std::vec
   if (invisible.places.empty()) return;
   const NarrowPlace& largest = invisible.places.front();
   notes.push_back(fmt::format(
-      "{} of the domain too narrow for {} are not in the mesh, {} cells in all. The largest, about ({:.6g}, "
-      "{:.6g}, "
-      "{:.6g}), is {:.4g} wide; a feature size of {:.4g} would show it.",
-      invisible.places.size() == 1 ? "A place" : fmt::format("{} places", invisible.places.size()),
+      "The mesh leaves out {} of the domain too narrow for {}, {} cells in all. The largest, about ({:.6g}, "
+      "{:.6g}, {:.6g}), is {:.4g} wide; a feature size of {:.4g} would show it.",
+      invisible.places.size() == 1 ? "a place" : fmt::format("{} places", invisible.places.size()),
       sizeHint(tree), invisible.cells.size(), largest.centre[0], largest.centre[1], largest.centre[2],
       largest.median, largest.featureSize));
 }

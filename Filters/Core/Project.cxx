@@ -30,6 +30,9 @@ constexpr int kFreeingRounds = 12;
 constexpr double kWorthFreeing = 0.9, kFew = 0.002;
 // Only points whose worst measure is this near its limit can be what holds a node.
 constexpr double kAtLimit = 0.8;
+// A node farther than this from the geometry, in length scales, may lie behind another wall; a wall is
+// between when it is met before this part of the way.
+constexpr double kBeyond = 0.1, kThrough = 0.9;
 // Octree nodes within so many edges of the bases may move; the core beyond keeps its perfect cells.
 constexpr int kInnerRings = 2;
 
@@ -184,7 +187,7 @@ class Projector {
     }
     if (driftPart(p, row, x, part)) return;
     // The prism is in the way: take its foot along.
-    const Vec3 way = field_.closest(x).point - x;
+    const Vec3 way = wayToGeometry(p, row, x);
     const double distance = way.norm(), wanted = distance < kArrived * wall_.scale[row] ? 1 : part;
     const Id b = mesh_.base[p];
     if (mover_.moveTogether({p, b}, {x + wanted * way, mesh_.points[b] + 0.5 * wanted * way}))
@@ -193,9 +196,22 @@ class Projector {
       distance_[row] = (1 - 0.5 * wanted * mover_.drift(p, x + 0.5 * wanted * way, 2)) * distance;
   }
 
+  // To the closest point, if the lower end of the prism edge sees it. A front that has stayed beyond the
+  // geometry may have the back of another wall closest; its way is to where its prism edge meets the
+  // geometry first.
+  Vec3 wayToGeometry(Id p, Id row, const Vec3& from) const {
+    const Vec3 closest = field_.closest(from).point, way = closest - from;
+    if (way.norm() < kBeyond * wall_.scale[row]) return way;
+    const Vec3& base = mesh_.points[mesh_.base[p]];
+    const SurfaceModel& model = field_.model();
+    const double met = model.firstCrossing(base, from);
+    if (met > 1 || !model.crosses(base, base + kThrough * (closest - base))) return way;
+    return base + met * (from - base) - from;
+  }
+
   /// Moves p to where part of the way from `from` to the geometry leads; false when it may not.
   bool driftPart(Id p, Id row, const Vec3& from, double part) {
-    const Vec3 way = field_.closest(from).point - from;
+    const Vec3 way = wayToGeometry(p, row, from);
     const double distance = way.norm();
     const double wanted = distance < kArrived * wall_.scale[row] ? 1 : part;
     if (!moveWithBase(p, row, from + wanted * way)) return false;

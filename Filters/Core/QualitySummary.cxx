@@ -137,9 +137,9 @@ std::string describeViolations(const PolyMesh& mesh, const MeshMeasures& measure
                    [](const Criterion& a, const Criterion& b) { return a.severity() > b.severity(); });
   std::string text;
   for (const Criterion& c : broken) {
-    text += fmt::format("{} of {} {} have a {} {} {:.6g}; the worst is {:.6g} at id {}.\n", c.outside,
-                        c.last - c.first, c.what, c.value, c.upper ? "above" : "below", c.limit, c.worstValue,
-                        c.worst);
+    text += fmt::format("{} of {} {} are outside a limit: {} {} {:.6g}; the worst is {:.6g} at id {}.\n",
+                        c.outside, c.last - c.first, c.what, c.value, c.upper ? "above" : "below", c.limit,
+                        c.worstValue, c.worst);
   }
   return text;
 }

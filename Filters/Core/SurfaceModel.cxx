@@ -167,6 +167,20 @@ struct SurfaceModel::Hierarchy {
   Bvh bvh;
   std::vector<Corners> slots;
 
+  /// Calls enough(part of the way) where the segment meets a triangle, until it says true.
+  template <class Enough>
+  bool anyHit(const Vec3& p, const Vec3& q, const Enough& enough) const {
+    Box path;
+    path.add(p);
+    path.add(q);
+    return bvh.any([&](Id, const Box& box) { return box.overlaps(path); },
+                   [&](Id slot) {
+                     const Corners& t = slots[slot];
+                     const double at = rayHit(p, q - p, t.a, t.b, t.c);
+                     return at >= 0 && at <= 1 && enough(at);
+                   });
+  }
+
   explicit Hierarchy(const SurfaceModel& model) {
     std::vector<Box> boxes(model.triangles_.size());
     const auto each = [&](const auto& body) { tbb::parallel_for(Id(0), model.triangleCount(), body); };
@@ -281,15 +295,16 @@ double rayHit(const Vec3& from, const Vec3& along, const Vec3& a, const Vec3& b,
 }
 
 bool SurfaceModel::crosses(const Vec3& p, const Vec3& q) const {
-  Box path;
-  path.add(p);
-  path.add(q);
-  const auto crossesSlot = [&](Id slot) {
-    const Hierarchy::Corners& t = tree_->slots[slot];
-    const double at = rayHit(p, q - p, t.a, t.b, t.c);
-    return at >= 0 && at <= 1;
-  };
-  return tree_->bvh.any([&](Id, const Box& box) { return box.overlaps(path); }, crossesSlot);
+  return tree_->anyHit(p, q, [](double) { return true; });
+}
+
+double SurfaceModel::firstCrossing(const Vec3& p, const Vec3& q) const {
+  double first = std::numeric_limits<double>::infinity();
+  tree_->anyHit(p, q, [&](double at) {
+    first = std::min(first, at);
+    return false;
+  });
+  return first;
 }
 
 }  // namespace pm

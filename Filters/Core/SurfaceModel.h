@@ -60,6 +60,8 @@ class SurfaceModel {
   std::vector<Id> trianglesNear(const Box& box) const;
   /// Does a triangle cross the segment, to rounding? Thread-safe.
   bool crosses(const Vec3& p, const Vec3& q) const;
+  /// The part of the way from p to q at which a triangle is met first; infinity for none. Thread-safe.
+  double firstCrossing(const Vec3& p, const Vec3& q) const;
   /// The tree over the triangles' boxes, for searches of one's own.
   const Bvh& hierarchy() const;
 

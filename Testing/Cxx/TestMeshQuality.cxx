@@ -156,7 +156,7 @@ TEST(MeshQuality, InvertedCellIsReported) {
   EXPECT_NEAR(q.minVolume, -0.5, 1e-14);
   EXPECT_GT(q.violations, 0);
   const std::string text = describeViolations(mesh, m, QualityLimits());
-  EXPECT_EQ(text.find("1 of 2 cells have a volume"), 0u) << text;
+  EXPECT_EQ(text.find("1 of 2 cells are outside a limit: volume"), 0u) << text;
   EXPECT_NE(text.find("the worst is -0.5 at id 1"), std::string::npos) << text;
 }
 
