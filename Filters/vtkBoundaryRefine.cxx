@@ -86,6 +86,7 @@ void vtkBoundaryRefine::Run(vtkInformationVector** inputs, vtkUnstructuredGrid* 
   *this->Report = {};
   const pm::PolyMesh input = pm::unpackMesh(vtkUnstructuredGrid::GetData(inputs[0]), "Boundary Refine",
                                             {pm::Stage::Resolved, pm::Stage::Projected});
+  DoneWith(inputs[0]);
   const pm::PolyMesh result = pm::boundaryRefine(input, this->Options(), monitor, this->Report.get());
   pm::packMesh(result, mesh);
   pm::packBoundary(result, boundary);

@@ -23,9 +23,10 @@ pm::DummyLayerOptions vtkDummyLayer::Options() const {
 
 void vtkDummyLayer::Run(vtkInformationVector** inputs, vtkUnstructuredGrid* mesh, vtkPolyData* boundary,
                         pm::Monitor& monitor) {
-  const pm::PolyMesh front =
+  pm::PolyMesh front =
       pm::unpackMesh(vtkUnstructuredGrid::GetData(inputs[0]), "Dummy Layer", {pm::Stage::Front});
-  const pm::PolyMesh result = pm::dummyLayer(front, this->Options(), monitor);
+  DoneWith(inputs[0]);
+  const pm::PolyMesh result = pm::dummyLayer(std::move(front), this->Options(), monitor);
   pm::packMesh(result, mesh);
   pm::packBoundary(result, boundary);
 }

@@ -51,6 +51,7 @@ void vtkFarField::Run(vtkInformationVector** inputs, vtkUnstructuredGrid* mesh, 
   const pm::PolyMesh inner = pm::unpackMesh(
       vtkUnstructuredGrid::GetData(inputs[0]), "Far Field",
       {pm::Stage::Refined, pm::Stage::Resolved, pm::Stage::Projected, pm::Stage::Layer, pm::Stage::Front});
+  DoneWith(inputs[0]);
   const pm::PolyMesh result = pm::farField(inner, this->Options(), monitor, this->Report.get());
   pm::packMesh(result, mesh);
   pm::packBoundary(result, boundary);

@@ -8,6 +8,7 @@
 
 #include "GeometryInput.h"
 #include "StageMonitor.h"
+#include "vtkDemandDrivenPipeline.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkPolyData.h"
@@ -88,6 +89,11 @@ bool vtkMeshStage::RunSafely(vtkInformationVector** inputs, vtkUnstructuredGrid*
 std::shared_ptr<const pm::SurfaceModel> vtkMeshStage::Surface(vtkInformationVector** inputs) {
   this->Held = pm::surfaceFrom(vtkDataObject::GetData(inputs[this->GeometryPort]), this->PatchArray);
   return this->Held;
+}
+
+void vtkMeshStage::DoneWith(vtkInformationVector* input) {
+  const bool wanted = input->GetInformationObject(0)->Get(vtkDemandDrivenPipeline::RELEASE_DATA()) == 0;
+  if (!wanted) vtkDataObject::GetData(input)->ReleaseData();
 }
 
 void vtkMeshStage::PrintSelf(ostream& os, vtkIndent indent) {

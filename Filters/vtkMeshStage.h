@@ -61,6 +61,11 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkMeshStage : public vtkUnstructuredGridAl
   /// holds them until its next run, so that a change of an option need not prepare them again.
   std::shared_ptr<const pm::SurfaceModel> Surface(vtkInformationVector** inputs);
 
+  /// To be called when Run() has read all it needs of a grid on an input port: frees the grid now, where it
+  /// would be freed after this filter anyway (ReleaseDataFlag of the filter before), rather than hold it
+  /// through the run.
+  static void DoneWith(vtkInformationVector* input);
+
   /// Called when Run() has thrown and the outputs are empty: a stage that can show why fills an output of its
   /// own.
   virtual void ShowFailure() {}

@@ -114,6 +114,7 @@ pm::PaintFrontOptions vtkPaintFront::Options() const {
 void vtkPaintFront::Run(vtkInformationVector** inputs, vtkUnstructuredGrid* mesh, vtkPolyData* boundary,
                         pm::Monitor& monitor) {
   pm::Octree tree = pm::unpackOctree(vtkUnstructuredGrid::GetData(inputs[0]), "Paint Front");
+  DoneWith(inputs[0]);
   const auto model = this->Surface(inputs);
   pm::listTriangles(tree, *model);
   pm::PaintFrontReport report;

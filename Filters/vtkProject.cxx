@@ -52,6 +52,7 @@ void vtkProject::Run(vtkInformationVector** inputs, vtkUnstructuredGrid* mesh, v
                      pm::Monitor& monitor) {
   pm::PolyMesh result =
       pm::unpackMesh(vtkUnstructuredGrid::GetData(inputs[0]), "Project", {pm::Stage::Layer});
+  DoneWith(inputs[0]);
   const auto model = this->Surface(inputs);
   pm::DistanceField field(*model, result.finestSize);
   std::vector<pm::StuckNode> stuck;

@@ -51,6 +51,7 @@ void vtkResolveFeatures::Run(vtkInformationVector** inputs, vtkUnstructuredGrid*
   const pm::ResolveFeaturesOptions options = this->Options(vtkDataObject::GetData(inputs[2]));
   pm::PolyMesh result =
       pm::unpackMesh(vtkUnstructuredGrid::GetData(inputs[0]), "Resolve Features", {pm::Stage::Projected});
+  DoneWith(inputs[0]);
   const auto model = this->Surface(inputs);
   pm::DistanceField field(*model, result.finestSize);
   pm::ResolveFeaturesReport report;

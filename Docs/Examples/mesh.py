@@ -15,6 +15,8 @@ import subprocess
 import sys
 import time
 
+import mesh_report
+
 HERE = os.path.dirname(os.path.abspath(__file__))
 EXAMPLE = os.path.join(HERE, "..", "..", "Testing", "Data", "pipe_junction_dirty.stl")
 EXAMPLE_FEATURE_SIZE = 0.003
@@ -164,23 +166,6 @@ class Progress:
         return f"[{'#' * filled}{'.' * (self.WIDTH - filled)}] {percent:3d}% {stage:16s} {text}"
 
 
-def peak_memory():
-    """Peak resident memory of this process in MB since it was last reset."""
-    try:
-        with open("/proc/self/status", encoding="ascii") as status:
-            return next(int(line.split()[1]) for line in status if line.startswith("VmHWM")) / 1024
-    except (OSError, StopIteration):
-        return float("nan")
-
-
-def reset_peak_memory():
-    try:
-        with open("/proc/self/clear_refs", "w", encoding="ascii") as control:
-            control.write("5")
-    except OSError:
-        pass  # then a stage's peak includes those before it
-
-
 class Runner:
     """Updates filters one after the other; collects seconds and peak memory, and turns errors into UserError."""
 
@@ -216,11 +201,11 @@ class Runner:
 
         algorithm.GetExecutive().AddObserver("ErrorEvent", lambda *_: None)  # it only says that the filter failed
         algorithm.AddObserver("ProgressEvent", on_progress)
-        reset_peak_memory()
+        mesh_report.reset_peak_memory()
         start = time.perf_counter()
         self.progress.show(stage, 0)
         (action or algorithm.Update)()
-        seconds, megabytes = time.perf_counter() - start, peak_memory()
+        seconds, megabytes = time.perf_counter() - start, mesh_report.peak_memory()
         if self.stopped or errors:
             self.progress.clear()
             raise UserError("Stopped on request." if self.stopped else sentence(errors[0]))
@@ -309,6 +294,11 @@ def read_geometry(pm, runner, options):
     return blocks if len(options.geometry) > 1 else blocks.GetBlock(0)
 
 
+def prepare_geometry(pm, runner, options):
+    geometry = read_geometry(pm, runner, options)
+    return close_holes(pm, runner, options, geometry) if options.close_holes else geometry
+
+
 def close_holes(pm, runner, options, geometry):
     """The geometry without its holes; where they were is left in leaks.vtp."""
     holes = pm.vtkCloseHoles()
@@ -344,9 +334,19 @@ def add_far_field(pm, runner, options, mesh):
     else:
         far.SetDistance(options.far_box)
     far.SetThreads(options.threads)
-    far.SetInputDataObject(0, mesh)
+    consume(far, 0, mesh)
     runner.run("FarField", far)
-    return far
+    return outputs(far)
+
+
+def check_validity(pm, runner, mesh):
+    """The filter with its findings, but without its copy of the mesh."""
+    validity = pm.vtkMeshValidity()
+    validity.SetInputDataObject(mesh)
+    runner.run("validity", validity)
+    for data in outputs(validity):
+        data.Initialize()
+    return validity
 
 
 def print_notes(grid):
@@ -356,52 +356,78 @@ def print_notes(grid):
         print(f"mesh.sh: note: {notes.GetValue(i)}", file=sys.stderr)
 
 
-def mesh_geometry(pm, runner, options, geometry):
-    """Runs the stages; the filters, of which the last still holds its outputs."""
-    filters = make_filters(pm, options)
-    grid = None
-    for name, stage in zip(STAGES, filters):
-        inputs = [data for data in (grid, geometry) if data is not None][:stage.GetNumberOfInputPorts()]
-        for port, data in enumerate(inputs):
+def consume(algorithm, port, data):
+    """Makes data an input that is freed as soon as the filter has read it."""
+    algorithm.SetInputDataObject(port, data)
+    algorithm.GetInputAlgorithm(port, 0).ReleaseDataFlagOn()
+
+
+def outputs(stage):
+    """Mesh and boundary, which outlive the filter; no boundary for the octree."""
+    return stage.GetOutputDataObject(0), stage.GetOutputDataObject(1) if stage.GetNumberOfOutputPorts() > 1 else None
+
+
+def run_stage(runner, options, name, stage, inputs):
+    """inputs: the mesh of the stage before, which is consumed, and the geometry."""
+    for port, data in enumerate(inputs[:stage.GetNumberOfInputPorts()]):
+        if data.IsA("vtkUnstructuredGrid"):
+            consume(stage, port, data)
+        else:
             stage.SetInputDataObject(port, data)
-        try:
-            runner.run(name, stage)
-        except UserError as error:
-            if name == "PaintFront" and stage.GetOutputDataObject(stage.LEAKS).GetNumberOfCells():
-                write_lines(options, "leaks.vtp", stage.GetOutputDataObject(stage.LEAKS))
-                raise UserError(f"{error} The ways are in {options.output}/leaks.vtp.") from error
-            raise
-        grid = stage.GetOutputDataObject(0)
-        if name == "PaintFront":
-            print_notes(grid)
-        if name == "ResolveFeatures":
-            write_lines(options, "unresolved.vtp", stage.GetOutputDataObject(stage.UNRESOLVED))
-        for port in range(len(inputs)):
-            stage.SetInputDataObject(port, None)  # free what is done with
-    return filters
+    try:
+        runner.run(name, stage)
+    except UserError as error:
+        if name == "PaintFront" and stage.GetOutputDataObject(stage.LEAKS).GetNumberOfCells():
+            write_lines(options, "leaks.vtp", stage.GetOutputDataObject(stage.LEAKS))
+            raise UserError(f"{error} The ways are in {options.output}/leaks.vtp.") from error
+        raise
+    if name == "PaintFront":
+        print_notes(stage.GetOutputDataObject(0))
+    if name == "ResolveFeatures":
+        write_lines(options, "unresolved.vtp", stage.GetOutputDataObject(stage.UNRESOLVED))
+
+
+def mesh_geometry(pm, runner, options, geometry):
+    """Runs the stages; the mesh, its boundary (None after the octree), and lines for the report. A stage is freed when
+    its mesh is handed on, the geometry after the last stage that looks at it."""
+    lines, inputs = [], [geometry]
+    del geometry
+    filters = make_filters(pm, options)
+    prepared = filters[0]  # holds the geometry as all stages search it
+    for name in STAGES[:len(filters)]:
+        boundary = stage = None
+        if name == "BoundaryRefine":
+            prepared = None
+            inputs.pop()
+        stage = filters.pop(0)
+        run_stage(runner, options, name, stage, inputs)
+        lines += mesh_report.of_stage(name, stage)
+        grid, boundary = outputs(stage)
+        inputs = [grid] + inputs[-1:]
+    return grid, boundary, lines
 
 
 # ---------------------------------------------------------------------------------------------------- results
-def write_results(pm, runner, options, last):
+def write_results(pm, runner, options, mesh, boundary):
     from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter
-    outputs = [(vtkXMLUnstructuredGridWriter(), "mesh.vtu")]
-    if last.GetNumberOfOutputPorts() > 1:
-        outputs.append((vtkXMLPolyDataWriter(), "boundary.vtp"))
-    for port, (writer, name) in enumerate(outputs):
+    for writer, data, name in ((vtkXMLUnstructuredGridWriter(), mesh, "mesh.vtu"),
+                               (vtkXMLPolyDataWriter(), boundary, "boundary.vtp")):
+        if data is None:
+            continue
         writer.SetFileName(os.path.join(options.output, name))
-        writer.SetInputDataObject(last.GetOutputDataObject(port))
+        writer.SetInputDataObject(data)
         writer.SetCompressorTypeToLZ4()
         writer.SetDataModeToBinary()  # Debian 12's expat, as patched, makes VTK fail to read appended data
         runner.run(f"write {name}", writer, writer.Write)
     if options.stop_after > 0:
         writer = pm.vtkPolyMeshWriter()
-        writer.SetInputDataObject(last.GetOutputDataObject(0))
+        writer.SetInputDataObject(mesh)
         writer.SetDirectory(os.path.join(options.output, "polyMesh"))
         writer.BinaryOff()
         runner.run("write polyMesh", writer, writer.Write)
-        others = {"msh": (pm.vtkFluentWriter(), 0, "mesh.msh"), "stl": (pm.vtkSurfaceWriter(), 1, "boundary.stl")}
-        for writer, port, name in (others[kind] for kind in options.also):
-            writer.SetInputDataObject(last.GetOutputDataObject(port))
+        others = {"msh": (pm.vtkFluentWriter(), mesh, "mesh.msh"), "stl": (pm.vtkSurfaceWriter(), boundary, "boundary.stl")}
+        for writer, data, name in (others[kind] for kind in options.also):
+            writer.SetInputDataObject(data)
             writer.SetFileName(os.path.join(options.output, name))
             runner.run(f"write {name}", writer, writer.Write)
 
@@ -438,23 +464,16 @@ def main(arguments):
         options.feature_size = options.feature_size or EXAMPLE_FEATURE_SIZE
     clear_output(options)
     from projection_mesher import ProjectionMesherFilters as pm
-    import mesh_report
     runner = Runner()
-    geometry = read_geometry(pm, runner, options)
-    if options.close_holes:
-        geometry = close_holes(pm, runner, options, geometry)
-    filters = mesh_geometry(pm, runner, options, geometry)
-    last = filters[-1]
+    mesh, boundary, of_stages = mesh_geometry(pm, runner, options, prepare_geometry(pm, runner, options))
     if (options.far_box or options.far_sphere) and options.stop_after > 0:
-        last = add_far_field(pm, runner, options, filters[-1].GetOutputDataObject(0))
-    validity = None
-    if options.stop_after > 0:
-        validity = pm.vtkMeshValidity()
-        validity.SetInputDataObject(last.GetOutputDataObject(0))
-        runner.run("validity", validity)
-    write_results(pm, runner, options, last)
+        mesh, boundary = add_far_field(pm, runner, options, mesh)
+    validity = check_validity(pm, runner, mesh) if options.stop_after > 0 else None
+    write_results(pm, runner, options, mesh, boundary)
+    report = mesh_report.of_mesh(mesh, boundary, validity) + of_stages + mesh_report.of_cost(runner.measured)
+    del mesh, boundary
     make_pictures(options)
-    mesh_report.print_report(filters, last, validity, runner.measured)
+    print("\n".join(report), flush=True)
     print(f"Results are in {options.output}")
     if validity and validity.GetViolations() > 0:
         raise UserError(f"The mesh is not valid: {sentence(validity.GetDescription())}")

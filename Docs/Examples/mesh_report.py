@@ -1,34 +1,51 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The table that mesh.py prints: what the mesh consists of, how good it is and what it cost."""
+import collections
+
 from vtkmodules.vtkCommonDataModel import (VTK_HEXAHEDRON, VTK_POLYHEDRON, VTK_PYRAMID, VTK_TETRA, VTK_VOXEL,
                                            VTK_WEDGE)
-from vtkmodules.util.numpy_support import vtk_to_numpy
-import numpy
 
 TYPE_NAMES = {VTK_VOXEL: "voxels", VTK_HEXAHEDRON: "hexahedra", VTK_WEDGE: "wedges", VTK_TETRA: "tetrahedra",
               VTK_PYRAMID: "pyramids", VTK_POLYHEDRON: "polyhedra"}
 
 
+def peak_memory():
+    """Peak resident memory of this process in MB since it was last reset."""
+    try:
+        with open("/proc/self/status", encoding="ascii") as status:
+            return next(int(line.split()[1]) for line in status if line.startswith("VmHWM")) / 1024
+    except (OSError, StopIteration):
+        return float("nan")
+
+
+def reset_peak_memory():
+    try:
+        with open("/proc/self/clear_refs", "w", encoding="ascii") as control:
+            control.write("5")
+    except OSError:
+        pass  # then a stage's peak includes those before it
+
+
 def rows(title, pairs):
-    print(f"\n{title}")
-    for name, value in pairs:
-        print(f"  {name:38s} {value}")
+    """Lines of a part of the report."""
+    return ["", title] + [f"  {name:38s} {value}" for name, value in pairs]
 
 
 def cells(grid):
-    types = numpy.bincount(vtk_to_numpy(grid.GetCellTypesArray()), minlength=max(TYPE_NAMES) + 1)
+    types = bytes(memoryview(grid.GetCellTypesArray()))
+    counts = {kind: types.count(kind) for kind in TYPE_NAMES}
     pairs = [("cells", f"{grid.GetNumberOfCells():,}")]
-    pairs += [(f"  {name}", f"{types[kind]:,}") for kind, name in TYPE_NAMES.items() if types[kind]]
+    pairs += [(f"  {name}", f"{counts[kind]:,}") for kind, name in TYPE_NAMES.items() if counts[kind]]
     return pairs + [("points", f"{grid.GetNumberOfPoints():,}")]
 
 
 def patches(boundary):
     field = boundary.GetFieldData()
     names, kinds = field.GetAbstractArray("PatchNames"), field.GetAbstractArray("PatchTypes")
-    of_face = vtk_to_numpy(boundary.GetCellData().GetArray("PatchId"))
-    counts = numpy.bincount(of_face, minlength=names.GetNumberOfValues())
+    faces = collections.Counter(memoryview(boundary.GetCellData().GetArray("PatchId")))
     meaning = {"wall": "geometry", "patch": "domain side"}
-    return [(names.GetValue(i), f"{counts[i]:,} faces ({meaning[kinds.GetValue(i)]})") for i in range(len(counts))]
+    return [(names.GetValue(i), f"{faces[i]:,} faces ({meaning[kinds.GetValue(i)]})")
+            for i in range(names.GetNumberOfValues())]
 
 
 def worst_measures(v):
@@ -74,36 +91,41 @@ def layer_table(table):
     columns = [table.GetColumn(i) for i in range(table.GetNumberOfColumns())]
     value = {c.GetName(): c for c in columns}
     first_reason = [c.GetName() for c in columns].index("Thickness") + 1
-    print("\nLayers by patch (shares of area; lengths)\n" + 29 * " " + "   faces wanted  mean   all of covered | first height "
-          "wanted      mean     least  in 20% | thickness")
+    lines = ["", "Layers by patch (shares of area; lengths)", 29 * " " + "   faces wanted  mean   all of covered | first height "
+             "wanted      mean     least  in 20% | thickness"]
     for row in range(table.GetNumberOfRows()):
         number = {name: column.GetValue(row) for name, column in value.items()}
-        print(f"  {number['Patch'][:27]:27s} {number['Faces']:8,d} {number['LayersWanted']:6d} {number['Layers']:5.2f} "
-              f"{number['AllLayers']:7.1f}% {number['Covered']:6.1f}% | {number['FirstHeightWanted']:19.3g} "
-              f"{number['FirstHeightMean']:9.3g} {number['FirstHeightLeast']:9.3g} {number['AsWanted']:6.1f}% | "
-              f"{number['Thickness']:9.3g}")
+        lines.append(f"  {number['Patch'][:27]:27s} {number['Faces']:8,d} {number['LayersWanted']:6d} {number['Layers']:5.2f} "
+                     f"{number['AllLayers']:7.1f}% {number['Covered']:6.1f}% | {number['FirstHeightWanted']:19.3g} "
+                     f"{number['FirstHeightMean']:9.3g} {number['FirstHeightLeast']:9.3g} {number['AsWanted']:6.1f}% | "
+                     f"{number['Thickness']:9.3g}")
     last = table.GetNumberOfRows() - 1
     reasons = [(c.GetName(), f"{c.GetValue(last):,} faces") for c in columns[first_reason:]] if last >= 0 else []
-    if reasons:
-        rows("Fewer layers, because", reasons)
+    return lines + (rows("Fewer layers, because", reasons) if reasons else [])
 
 
-def print_report(filters, last, validity, measured):
-    """filters: the stages that ran; last: the filter that holds the mesh, a stage or what came after it."""
-    grid = last.GetOutputDataObject(0)
-    rows("Mesh", cells(grid))
+def of_stage(name, stage):
+    """Lines on what a stage has just done; a stage of which there is nothing to say has none."""
+    if name == "ResolveFeatures":
+        return rows("Features", features(stage))
+    if name == "BoundaryRefine":
+        return rows("Layers", layers(stage)) + layer_table(stage.GetOutputDataObject(stage.LAYERS))
+    return []
+
+
+def of_mesh(grid, boundary, validity):
+    """Lines on the mesh; validity: the filter that has measured it, None for an octree."""
+    lines = rows("Mesh", cells(grid))
     if validity:
-        rows("Faces", [("internal", f"{validity.GetInternalFaces():,}"),
-                       ("boundary", f"{validity.GetBoundaryFaces():,}")])
-        rows("Patches", patches(last.GetOutputDataObject(1)))
-        rows("Worst measures", worst_measures(validity))
-    if len(filters) > 4:
-        rows("Features", features(filters[4]))
-    if len(filters) > 5:
-        rows("Layers", layers(filters[5]))
-        layer_table(filters[5].GetOutputDataObject(filters[5].LAYERS))
-    print("\nCost" + 34 * " " + f"{'seconds':>9s} {'peak MB':>9s}")
-    for stage, seconds, megabytes in measured:
-        print(f"  {stage:34s} {seconds:11.2f} {megabytes:9.0f}")
-    print(f"  {'total, largest':34s} {sum(m[1] for m in measured):11.2f} {max(m[2] for m in measured):9.0f}")
-    print(flush=True)
+        lines += rows("Faces", [("internal", f"{validity.GetInternalFaces():,}"),
+                                ("boundary", f"{validity.GetBoundaryFaces():,}")])
+        lines += rows("Patches", patches(boundary))
+        lines += rows("Worst measures", worst_measures(validity))
+    return lines
+
+
+def of_cost(measured):
+    """measured: (step, seconds, peak in MB) of all."""
+    lines = ["", "Cost" + 34 * " " + f"{'seconds':>9s} {'peak MB':>9s}"]
+    lines += [f"  {step:34s} {seconds:11.2f} {megabytes:9.0f}" for step, seconds, megabytes in measured]
+    return lines + [f"  {'total, largest':34s} {sum(m[1] for m in measured):11.2f} {max(m[2] for m in measured):9.0f}", ""]
