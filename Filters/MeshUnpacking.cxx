@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <numeric>
 
 #include "GridArrays.h"
@@ -24,38 +25,39 @@ namespace pm {
 
 namespace {
 
-/// Faces of a linear VTK cell, outward, as positions in the cell's point list.
+/// Faces of a linear VTK cell, outward, as positions in the cell's point list; -1 fills up a triangle.
 struct CellShape {
-  int vtkType;
-  int points;
-  std::vector<std::vector<int>> faces;
+  int points, faces;
+  std::array<std::array<int, 4>, 6> face;
+  int faceSize(int k) const { return face[k][3] < 0 ? 3 : 4; }
 };
+
+constexpr CellShape kHexahedron{
+    8, 6, {{{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}}}};
+constexpr CellShape kVoxel{
+    8, 6, {{{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}}};
+constexpr CellShape kWedge{6, 5, {{{0, 1, 2, -1}, {3, 5, 4, -1}, {0, 3, 4, 1}, {1, 4, 5, 2}, {2, 5, 3, 0}}}};
+constexpr CellShape kTetra{4, 4, {{{0, 1, 3, -1}, {1, 2, 3, -1}, {2, 0, 3, -1}, {0, 2, 1, -1}}}};
+constexpr CellShape kPyramid{
+    5, 5, {{{0, 3, 2, 1}, {0, 1, 4, -1}, {1, 2, 4, -1}, {2, 3, 4, -1}, {3, 0, 4, -1}}}};
 
 /// Null for any other type.
-
 const CellShape* linearShape(int vtkType) {
-  static const CellShape hexahedron{
-      VTK_HEXAHEDRON,
-      8,
-      {{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}}};
-  static const CellShape voxel{
-      VTK_VOXEL, 8, {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
-  static const CellShape wedge{
-      VTK_WEDGE, 6, {{0, 1, 2}, {3, 5, 4}, {0, 3, 4, 1}, {1, 4, 5, 2}, {2, 5, 3, 0}}};
-  static const CellShape tetra{VTK_TETRA, 4, {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {0, 2, 1}}};
-  static const CellShape pyramid{VTK_PYRAMID, 5, {{0, 3, 2, 1}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}}};
-  for (const CellShape* shape : {&hexahedron, &voxel, &wedge, &tetra, &pyramid}) {
-    if (shape->vtkType == vtkType) return shape;
+  switch (vtkType) {
+    case VTK_HEXAHEDRON:
+      return &kHexahedron;
+    case VTK_VOXEL:
+      return &kVoxel;
+    case VTK_WEDGE:
+      return &kWedge;
+    case VTK_TETRA:
+      return &kTetra;
+    case VTK_PYRAMID:
+      return &kPyramid;
+    default:
+      return nullptr;
   }
-  return nullptr;
 }
-
-/// Faces as each cell has them: every internal face twice. A row starts at its smallest point and runs
-/// outward.
-struct HalfFaces {
-  Csr<Id> rows;
-  std::vector<Id> cell;
-};
 
 /// Read access to the grid's cells, whatever made them.
 class CellReader {
@@ -91,10 +93,29 @@ class CellReader {
     if (!known) refuseChanged(filter_, "it holds cells of another kind");
     const vtkTypeInt64* ids = connectivity_ + offsets_[cell];
     std::array<vtkIdType, 4> row;
-    for (const std::vector<int>& face : shape->faces) {
-      std::transform(face.begin(), face.end(), row.begin(), [&](int i) { return ids[i]; });
-      body(row.data(), static_cast<vtkIdType>(face.size()));
+    for (int k = 0; k < shape->faces; ++k) {
+      const int size = shape->faceSize(k);
+      for (int i = 0; i < size; ++i) row[i] = ids[shape->face[k][i]];
+      body(row.data(), size);
     }
+  }
+
+  /// Face k of a cell that eachFace has been through, outward, from its smallest point on.
+  void readFace(Id cell, Id k, std::vector<Id>& row) const {
+    row.clear();
+    const int type = types_->GetValue(cell);
+    if (type == VTK_POLYHEDRON) {
+      const vtkIdType* at = stream_ + locations_[cell] + 1;
+      for (; k > 0; --k) at += *at + 1;
+      row.resize(*at);
+      std::transform(at + 1, at + 1 + *at, row.begin(), [](vtkIdType p) { return static_cast<Id>(p); });
+    } else {
+      const CellShape& shape = *linearShape(type);
+      const vtkTypeInt64* ids = connectivity_ + offsets_[cell];
+      row.resize(shape.faceSize(k));
+      for (std::size_t i = 0; i < row.size(); ++i) row[i] = static_cast<Id>(ids[shape.face[k][i]]);
+    }
+    std::rotate(row.begin(), std::min_element(row.begin(), row.end()), row.end());
   }
 
   Id checkedPoint(vtkIdType p) const {
@@ -131,45 +152,56 @@ void prefixSum(std::vector<Id>& values) {
   std::exclusive_scan(values.begin(), values.end(), values.begin(), Id(0));
 }
 
-HalfFaces readHalfFaces(const CellReader& reader, Id cells) {
-  std::vector<Id> faceStart(cells + 1, 0), valueStart(cells + 1, 0);
-  tbb::parallel_for(Id(0), cells, [&](Id cell) {
-    reader.eachFace(cell, [&](const vtkIdType*, vtkIdType size) {
-      ++faceStart[cell];
-      valueStart[cell] += static_cast<Id>(size);
+/// Faces as each cell has them, every internal face twice, numbered cell by cell. Their points stay in the
+/// grid and are read from there, for all of them together would be twice the mesh.
+class HalfFaces {
+ public:
+  HalfFaces(const CellReader& reader, Id cells) : reader_(reader), start_(cells + 1, 0) {
+    tbb::parallel_for(Id(0), cells, [&](Id cell) {
+      reader.eachFace(cell, [&](const vtkIdType*, vtkIdType) { ++start_[cell]; });
     });
-  });
-  prefixSum(faceStart);
-  prefixSum(valueStart);
-  HalfFaces half;
-  half.cell.resize(faceStart[cells]);
-  half.rows.offsets.resize(faceStart[cells] + 1);
-  half.rows.values.resize(valueStart[cells]);
-  half.rows.offsets.back() = valueStart[cells];
-  tbb::parallel_for(Id(0), cells, [&](Id cell) {
-    Id face = faceStart[cell], value = valueStart[cell];
-    reader.eachFace(cell, [&](const vtkIdType* row, vtkIdType size) {
-      half.cell[face] = cell;
-      half.rows.offsets[face++] = value;
-      const vtkIdType* smallest = std::min_element(row, row + size);
-      for (vtkIdType i = 0; i < size; ++i) {
-        half.rows.values[value++] = reader.checkedPoint(row[(smallest - row + i) % size]);
-      }
+    prefixSum(start_);
+    cell_.resize(start_[cells]);
+    tbb::parallel_for(Id(0), cells, [&](Id cell) {
+      std::fill(cell_.begin() + start_[cell], cell_.begin() + start_[cell + 1], cell);
     });
-  });
-  return half;
-}
+  }
+
+  Id count() const { return static_cast<Id>(cell_.size()); }
+  Id cell(Id half) const { return cell_[half]; }
+  void read(Id half, std::vector<Id>& row) const {
+    reader_.readFace(cell_[half], half - start_[cell_[half]], row);
+  }
+  /// The smallest point of each. Throws InputError for points that do not exist.
+  std::vector<Id> firstPoints() const {
+    std::vector<Id> first(count());
+    tbb::parallel_for(Id(0), static_cast<Id>(start_.size()) - 1, [&](Id cell) {
+      Id half = start_[cell];
+      reader_.eachFace(cell, [&](const vtkIdType* row, vtkIdType size) {
+        Id& smallest = first[half++];
+        smallest = std::numeric_limits<Id>::max();
+        for (vtkIdType i = 0; i < size; ++i) smallest = std::min(smallest, reader_.checkedPoint(row[i]));
+      });
+    });
+    return first;
+  }
+
+ private:
+  const CellReader& reader_;
+  std::vector<Id> start_;  // #C + 1 first half face of each cell
+  std::vector<Id> cell_;
+};
 
 /// Half faces by their smallest point: rows of half-face ids, ascending.
 Csr<Id> byFirstPoint(const HalfFaces& half, Id points) {
+  const std::vector<Id> first = half.firstPoints();
   Csr<Id> buckets;
   buckets.offsets.assign(points + 1, 0);
-  const Id count = half.rows.rows();
-  for (Id h = 0; h < count; ++h) ++buckets.offsets[half.rows[h][0]];
+  for (Id p : first) ++buckets.offsets[p];
   prefixSum(buckets.offsets);
-  buckets.values.resize(count);
+  buckets.values.resize(first.size());
   std::vector<Id> next(buckets.offsets.begin(), buckets.offsets.end() - 1);
-  for (Id h = 0; h < count; ++h) buckets.values[next[half.rows[h][0]]++] = h;
+  for (Id h = 0; h < half.count(); ++h) buckets.values[next[first[h]]++] = h;
   return buckets;
 }
 
@@ -185,25 +217,64 @@ int compareUnoriented(Span<Id> a, Span<Id> b) {
   return 0;
 }
 
-/// The half face on the other side of each, kNone on the boundary.
-std::vector<Id> matchHalfFaces(const HalfFaces& half, Csr<Id> buckets, const std::string& filter) {
-  std::vector<Id> twin(half.cell.size(), kNone);
-  tbb::parallel_for(Id(0), buckets.rows(), [&](Id point) {
-    Id* first = buckets.values.data() + buckets.offsets[point];
-    Id* last = buckets.values.data() + buckets.offsets[point + 1];
-    std::sort(first, last, [&](Id a, Id b) {
-      const int order = compareUnoriented(half.rows[a], half.rows[b]);
-      return order != 0 ? order < 0 : a < b;
-    });
-    for (Id* h = first; h + 1 < last; ++h) {
-      if (compareUnoriented(half.rows[h[0]], half.rows[h[1]]) != 0) continue;
-      const bool sameWay = half.rows[h[0]][1] == half.rows[h[1]][1];
-      const bool third = h + 2 < last && compareUnoriented(half.rows[h[0]], half.rows[h[2]]) == 0;
-      if (sameWay || third) refuseChanged(filter, "cells overlap");
-      twin[h[0]] = h[1];
-      twin[h[1]] = h[0];
-      ++h;
+/// Finds twins among the half faces of one smallest point.
+class TwinFinder {
+ public:
+  TwinFinder(const HalfFaces& half, const std::string& filter) : half_(half), filter_(filter) {}
+
+  void find(Span<Id> bucket, std::vector<Id>& twin) {
+    sort(bucket);
+    for (std::size_t i = 0; i + 1 < order_.size(); ++i) {
+      if (!areEqual(i, i + 1)) continue;
+      const bool sameWay = row(i)[1] == row(i + 1)[1];
+      if (sameWay || (i + 2 < order_.size() && areEqual(i, i + 2))) refuseChanged(filter_, "cells overlap");
+      const Id one = bucket[order_[i].place], other = bucket[order_[i + 1].place];
+      twin[one] = other;
+      twin[other] = one;
+      ++i;
     }
+  }
+
+ private:
+  /// The points beside the smallest, the smaller of them first; they tell nearly all faces apart.
+  struct Entry {
+    std::uint64_t key;
+    Id place;
+  };
+  void sort(Span<Id> bucket) {
+    rows_.clear();
+    order_.clear();
+    for (Id place = 0; place < static_cast<Id>(bucket.size()); ++place) {
+      half_.read(bucket[place], row_);
+      rows_.push(row_);
+      const auto [low, high] = std::minmax(row_[1], row_.back());
+      order_.push_back({std::uint64_t(low) << 32 | std::uint64_t(high), place});
+    }
+    std::sort(order_.begin(), order_.end(), [&](const Entry& a, const Entry& b) {
+      if (a.key != b.key) return a.key < b.key;
+      const int order = compareUnoriented(rows_[a.place], rows_[b.place]);
+      return order != 0 ? order < 0 : a.place < b.place;
+    });
+  }
+  Span<Id> row(std::size_t i) const { return rows_[order_[i].place]; }
+  bool areEqual(std::size_t i, std::size_t j) const {
+    return order_[i].key == order_[j].key && compareUnoriented(row(i), row(j)) == 0;
+  }
+
+  const HalfFaces& half_;
+  const std::string& filter_;
+  Csr<Id> rows_;
+  std::vector<Entry> order_;
+  std::vector<Id> row_;
+};
+
+/// The half face on the other side of each, kNone on the boundary.
+std::vector<Id> matchHalfFaces(const HalfFaces& half, Id points, const std::string& filter) {
+  const Csr<Id> buckets = byFirstPoint(half, points);
+  std::vector<Id> twin(half.count(), kNone);
+  tbb::parallel_for(tbb::blocked_range<Id>(0, points, 256), [&](const tbb::blocked_range<Id>& range) {
+    TwinFinder finder(half, filter);
+    for (Id point = range.begin(); point != range.end(); ++point) finder.find(buckets[point], twin);
   });
   return twin;
 }
@@ -224,14 +295,23 @@ void joinHalfFaces(const HalfFaces& half, const std::vector<Id>& twin, PolyMesh&
   mesh.owner.resize(faces);
   mesh.neighbour.resize(internal);
   mesh.faces.offsets.assign(faces + 1, 0);
-  for (Id f = 0; f < faces; ++f) mesh.faces.offsets[f] = static_cast<Id>(half.rows[order[f]].size());
+  const auto forRows = [&](const auto& body) {
+    tbb::parallel_for(tbb::blocked_range<Id>(0, faces, 1024), [&](const tbb::blocked_range<Id>& range) {
+      std::vector<Id> row;
+      for (Id f = range.begin(); f != range.end(); ++f) {
+        half.read(order[f], row);
+        body(f, row);
+      }
+    });
+  };
+  forRows([&](Id f, const std::vector<Id>& row) {
+    mesh.owner[f] = half.cell(order[f]);
+    if (f < internal) mesh.neighbour[f] = half.cell(twin[order[f]]);
+    mesh.faces.offsets[f] = static_cast<Id>(row.size());
+  });
   prefixSum(mesh.faces.offsets);
   mesh.faces.values.resize(mesh.faces.offsets.back());
-  tbb::parallel_for(Id(0), faces, [&](Id f) {
-    const Id h = order[f];
-    mesh.owner[f] = half.cell[h];
-    if (f < internal) mesh.neighbour[f] = half.cell[twin[h]];
-    const Span<Id> row = half.rows[h];
+  forRows([&](Id f, const std::vector<Id>& row) {
     std::copy(row.begin(), row.end(), mesh.faces.values.begin() + mesh.faces.offsets[f]);
   });
   mesh.patch.assign(faces - internal, 0);
@@ -267,10 +347,13 @@ PolyMesh unpackCells(vtkUnstructuredGrid* grid, const std::string& filter) {
   mesh.cellCount = static_cast<Id>(grid->GetNumberOfCells());
   if (mesh.cellCount == 0) throw InputError(filter + ": the input grid has no cells.");
   const Id points = static_cast<Id>(grid->GetNumberOfPoints());
+  {
+    const CellReader reader(grid, filter);
+    const HalfFaces half(reader, mesh.cellCount);
+    joinHalfFaces(half, matchHalfFaces(half, points, filter), mesh);
+  }
   mesh.points.resize(points);
   tbb::parallel_for(Id(0), points, [&](Id p) { grid->GetPoints()->GetPoint(p, mesh.points[p].data()); });
-  const HalfFaces half = readHalfFaces(CellReader(grid, filter), mesh.cellCount);
-  joinHalfFaces(half, matchHalfFaces(half, byFirstPoint(half, points), filter), mesh);
   mesh.patchNames = {"boundary"};
   mesh.patchTypes = {"patch"};
   canonicalise(mesh);

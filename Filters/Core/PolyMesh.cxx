@@ -66,25 +66,56 @@ std::vector<Id> canonicalOrder(const PolyMesh& mesh) {
   return order;
 }
 
-/// values[i] = old values[order[i] - shift] for the rows that belong to `values`.
-void permute(std::vector<Id>& values, const std::vector<Id>& order, Id shift) {
-  std::vector<Id> moved(values.size());
-  forEach(static_cast<Id>(values.size()), [&](Id i) { moved[i] = values[order[i + shift] - shift]; });
-  values.swap(moved);
+/// Faces that change places only among themselves.
+struct Run {
+  Id first, last;
+};
+
+/// The runs of an order, those of one face left out. Faces that come by cells are out of order within a cell
+/// alone: most runs are short, and what is set aside to permute them is little.
+std::vector<Run> movedRuns(const std::vector<Id>& order) {
+  std::vector<Run> runs;
+  Id first = 0, most = -1;
+  for (Id i = 0; i < static_cast<Id>(order.size()); ++i) {
+    most = std::max(most, order[i]);
+    if (most > i) continue;
+    if (first < i) runs.push_back({first, i + 1});
+    first = i + 1;
+  }
+  return runs;
 }
 
-void permuteRows(Csr<Id>& rows, const std::vector<Id>& order) {
-  Csr<Id> moved;
-  moved.offsets.assign(rows.offsets.size(), 0);
-  for (Id i = 0; i < rows.rows(); ++i) {
-    moved.offsets[i + 1] = moved.offsets[i] + static_cast<Id>(rows[order[i]].size());
-  }
-  moved.values.resize(rows.values.size());
-  forEach(rows.rows(), [&](Id i) {
-    const Span<Id> row = rows[order[i]];
-    std::copy(row.begin(), row.end(), moved.values.begin() + moved.offsets[i]);
+template <class Body>
+void forEachRun(const std::vector<Run>& runs, const Body& body) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, runs.size(), 256), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) body(runs[i]);
   });
-  rows = std::move(moved);
+}
+
+/// values[i - shift] = old values[order[i] - shift] for the faces that `values` has.
+void permute(std::vector<Id>& values, const std::vector<Id>& order, const std::vector<Run>& runs, Id shift) {
+  forEachRun(runs, [&](const Run& run) {
+    if (run.first < shift || run.last - shift > static_cast<Id>(values.size())) return;
+    std::vector<Id> moved(run.last - run.first);
+    for (Id i = run.first; i < run.last; ++i) moved[i - run.first] = values[order[i] - shift];
+    std::copy(moved.begin(), moved.end(), values.begin() + (run.first - shift));
+  });
+}
+
+void permuteRows(Csr<Id>& rows, const std::vector<Id>& order, const std::vector<Run>& runs) {
+  forEachRun(runs, [&](const Run& run) {
+    const Id start = rows.offsets[run.first];
+    std::vector<Id> values, ends;
+    values.reserve(rows.offsets[run.last] - start);
+    ends.reserve(run.last - run.first);
+    for (Id i = run.first; i < run.last; ++i) {
+      const Span<Id> row = rows[order[i]];
+      values.insert(values.end(), row.begin(), row.end());
+      ends.push_back(start + static_cast<Id>(values.size()));
+    }
+    std::copy(values.begin(), values.end(), rows.values.begin() + start);
+    std::copy(ends.begin(), ends.end(), rows.offsets.begin() + run.first + 1);
+  });
 }
 
 }  // namespace
@@ -92,11 +123,11 @@ void permuteRows(Csr<Id>& rows, const std::vector<Id>& order) {
 void canonicalise(PolyMesh& mesh) {
   orientFaces(mesh);
   const std::vector<Id> order = canonicalOrder(mesh);
-  if (std::is_sorted(order.begin(), order.end())) return;
-  permuteRows(mesh.faces, order);
-  permute(mesh.owner, order, 0);
-  permute(mesh.neighbour, order, 0);
-  permute(mesh.patch, order, mesh.internalFaces());
+  const std::vector<Run> runs = movedRuns(order);
+  permuteRows(mesh.faces, order, runs);
+  permute(mesh.owner, order, runs, 0);
+  permute(mesh.neighbour, order, runs, 0);
+  permute(mesh.patch, order, runs, mesh.internalFaces());
 }
 
 Csr<Id> cellFaces(const PolyMesh& mesh) {
