@@ -84,10 +84,11 @@ vtkIdType vtkBoundaryRefine::GetFacesWithLayers(int layers) const {
 void vtkBoundaryRefine::Run(vtkInformationVector** inputs, vtkUnstructuredGrid* mesh, vtkPolyData* boundary,
                             pm::Monitor& monitor) {
   *this->Report = {};
-  const pm::PolyMesh input = pm::unpackMesh(vtkUnstructuredGrid::GetData(inputs[0]), "Boundary Refine",
-                                            {pm::Stage::Resolved, pm::Stage::Projected});
+  pm::PolyMesh input = pm::unpackMesh(vtkUnstructuredGrid::GetData(inputs[0]), "Boundary Refine",
+                                      {pm::Stage::Resolved, pm::Stage::Projected});
   DoneWith(inputs[0]);
-  const pm::PolyMesh result = pm::boundaryRefine(input, this->Options(), monitor, this->Report.get());
+  const pm::PolyMesh result =
+      pm::boundaryRefine(std::move(input), this->Options(), monitor, this->Report.get());
   pm::packMesh(result, mesh);
   pm::packBoundary(result, boundary);
   pm::packLayers(*this->Report, boundary);

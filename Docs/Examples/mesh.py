@@ -290,7 +290,9 @@ def read_geometry(pm, runner, options):
         reader = pm.vtkSurfaceReader()
         reader.SetFileName(path)
         runner.run("read", reader)
-        blocks.SetBlock(i, reader.GetOutputDataObject(0))
+        surface = reader.GetOutputDataObject(0)
+        surface.GetPolys().ConvertToSmallestStorage()
+        blocks.SetBlock(i, surface)
     return blocks if len(options.geometry) > 1 else blocks.GetBlock(0)
 
 

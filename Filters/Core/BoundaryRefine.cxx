@@ -191,13 +191,13 @@ void lowerUntilValid(PolyMesh& mesh, LayerColumns& columns, LayerPoints& points,
 
 }  // namespace
 
-PolyMesh boundaryRefine(const PolyMesh& input, const BoundaryRefineOptions& options, Monitor& monitor,
+PolyMesh boundaryRefine(PolyMesh mesh, const BoundaryRefineOptions& options, Monitor& monitor,
                         BoundaryRefineReport* report) {
-  checkMesh(input);
-  const LayerDemands demands(input, options, options.patches, options.flow);
+  checkMesh(mesh);
+  const LayerDemands demands(mesh, options, options.patches, options.flow);
   monitor.check(0, "finding prisms");
   const bool splits = demands.mostLayers() > 1;
-  PolyMesh mesh = splits ? splitCutColumns(input, options.limits, monitor) : input;
+  if (splits) mesh = splitCutColumns(mesh, options.limits, monitor);
   LayerColumns columns(mesh);
   const WallSight sight(mesh);
   if (splits && options.makeRoom) {

@@ -23,7 +23,8 @@ struct BoundaryRefineOptions : LayerSpec {  ///< the layers on all walls
   QualityLimits limits;                     ///< minVolume is not applied: layers are thin on purpose
 };
 
-PolyMesh boundaryRefine(const PolyMesh& mesh, const BoundaryRefineOptions& options, Monitor& monitor,
+/// Moved in, the mesh is in memory once less.
+PolyMesh boundaryRefine(PolyMesh mesh, const BoundaryRefineOptions& options, Monitor& monitor,
                         BoundaryRefineReport* report = nullptr);
 
 }  // namespace pm

@@ -28,6 +28,7 @@ class LayerBuilder {
 
   PolyMesh run() {
     out_ = in_;
+    out_.faces = Csr<Id>();  // addCells makes them anew
     out_.stage = Stage::Layer;
     findDirections();
     addPoints();

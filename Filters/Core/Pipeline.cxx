@@ -37,7 +37,7 @@ PolyMesh runPipeline(const SurfaceModel& given, const PipelineOptions& options, 
   if (options.stopAfter <= Stage::Projected) return mesh;
   resolveFeatures(mesh, field, options.features, monitor, &r.features);
   if (options.stopAfter <= Stage::Resolved) return mesh;
-  return boundaryRefine(mesh, options.refine, monitor, &r.refine);
+  return boundaryRefine(std::move(mesh), options.refine, monitor, &r.refine);
 }
 
 }  // namespace pm

@@ -160,23 +160,23 @@ std::vector<Id> mergePoints(std::vector<Vec3>& points) {
 }  // namespace
 
 struct SurfaceModel::Hierarchy {
-  struct Corners {
-    Vec3 a, b, c;  // ascending point ids
+  struct Slot {
+    Triangle corners;  // ascending
     Id id;
   };
   Bvh bvh;
-  std::vector<Corners> slots;
+  std::vector<Slot> slots;
 
   /// Calls enough(part of the way) where the segment meets a triangle, until it says true.
   template <class Enough>
-  bool anyHit(const Vec3& p, const Vec3& q, const Enough& enough) const {
+  bool anyHit(const std::vector<Vec3>& points, const Vec3& p, const Vec3& q, const Enough& enough) const {
     Box path;
     path.add(p);
     path.add(q);
     return bvh.any([&](Id, const Box& box) { return box.overlaps(path); },
                    [&](Id slot) {
-                     const Corners& t = slots[slot];
-                     const double at = rayHit(p, q - p, t.a, t.b, t.c);
+                     const Triangle& t = slots[slot].corners;
+                     const double at = rayHit(p, q - p, points[t[0]], points[t[1]], points[t[2]]);
                      return at >= 0 && at <= 1 && enough(at);
                    });
   }
@@ -191,8 +191,7 @@ struct SurfaceModel::Hierarchy {
     slots.resize(boxes.size());
     each([&](Id slot) {
       const Id t = bvh.order()[slot];
-      const Triangle ids = sorted(model.triangles_[t]);
-      slots[slot] = {model.points_[ids[0]], model.points_[ids[1]], model.points_[ids[2]], t};
+      slots[slot] = {sorted(model.triangles_[t]), t};
     });
   }
 };
@@ -208,6 +207,9 @@ SurfaceModel::SurfaceModel(const std::vector<Vec3>& points, const std::vector<Tr
   std::vector<Triangle> kept;
   kept.reserve(triangles.size());
   RowSet<Triangle> seen(triangles.size());
+  triangles_.reserve(triangles.size());
+  normals_.reserve(triangles.size());
+  patch_.reserve(triangles.size());
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     const Triangle t{merged[triangles[i][0]], merged[triangles[i][1]], merged[triangles[i][2]]};
     const Vec3 n = unitNormal(places[t[0]], places[t[1]], places[t[2]]);
@@ -240,6 +242,10 @@ SurfaceModel::SurfaceModel(const std::vector<Vec3>& points, const std::vector<Tr
     for (const unsigned char letter : name) hash_ = combine(hash_, letter);
     hash_ = combine(hash_, name.size());
   }
+  points_.shrink_to_fit();
+  triangles_.shrink_to_fit();
+  normals_.shrink_to_fit();
+  patch_.shrink_to_fit();
   tree_ = std::make_unique<Hierarchy>(*this);
 }
 
@@ -258,8 +264,8 @@ Closest SurfaceModel::closest(const Vec3& p, const Closest& seed) const {
   tree_->bvh.nearest(
       p, [&] { return best.distance2; },
       [&](Id slot) {
-        const Hierarchy::Corners& t = tree_->slots[slot];
-        const Closest found = closestOnCorners(p, t.a, t.b, t.c, t.id);
+        const auto& [t, id] = tree_->slots[slot];
+        const Closest found = closestOnCorners(p, points_[t[0]], points_[t[1]], points_[t[2]], id);
         if (found.distance2 < best.distance2 ||
             (found.distance2 == best.distance2 && found.triangle < best.triangle))
           best = found;
@@ -270,12 +276,10 @@ Closest SurfaceModel::closest(const Vec3& p, const Closest& seed) const {
 std::vector<Id> SurfaceModel::trianglesNear(const Box& box) const {
   std::vector<Id> found;
   tree_->bvh.overlapping(box, [&](Id slot) {
-    const Hierarchy::Corners& t = tree_->slots[slot];
+    const auto& [t, id] = tree_->slots[slot];
     Box own;
-    own.add(t.a);
-    own.add(t.b);
-    own.add(t.c);
-    if (own.overlaps(box)) found.push_back(t.id);
+    for (Id corner : t) own.add(points_[corner]);
+    if (own.overlaps(box)) found.push_back(id);
   });
   std::sort(found.begin(), found.end());
   return found;
@@ -295,12 +299,12 @@ double rayHit(const Vec3& from, const Vec3& along, const Vec3& a, const Vec3& b,
 }
 
 bool SurfaceModel::crosses(const Vec3& p, const Vec3& q) const {
-  return tree_->anyHit(p, q, [](double) { return true; });
+  return tree_->anyHit(points_, p, q, [](double) { return true; });
 }
 
 double SurfaceModel::firstCrossing(const Vec3& p, const Vec3& q) const {
   double first = std::numeric_limits<double>::infinity();
-  tree_->anyHit(p, q, [&](double at) {
+  tree_->anyHit(points_, p, q, [&](double at) {
     first = std::min(first, at);
     return false;
   });
