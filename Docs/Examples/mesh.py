@@ -77,6 +77,7 @@ def parser():
                    "the others; may be repeated")
     p.add_argument("--also", choices=("msh", "stl"), action="append", default=[],
                    help="write mesh.msh for Fluent, or boundary.stl with a solid for each patch, too; may be repeated")
+    p.add_argument("--no-pictures", action="store_true", help="do not draw section.png and surface.png")
     p.add_argument("--threads", type=int, default=0, metavar="N", help="threads to use (default: all)")
     p.add_argument("--stop-after", type=stage_index, default=len(STAGES) - 1, metavar="STAGE",
                    help="last stage to run: " + ", ".join(SHORT_NAMES))
@@ -201,6 +202,7 @@ class Runner:
 
         algorithm.GetExecutive().AddObserver("ErrorEvent", lambda *_: None)  # it only says that the filter failed
         algorithm.AddObserver("ProgressEvent", on_progress)
+        mesh_report.return_memory()
         mesh_report.reset_peak_memory()
         start = time.perf_counter()
         self.progress.show(stage, 0)
@@ -436,7 +438,8 @@ def write_results(pm, runner, options, mesh, boundary):
 
 def make_pictures(options):
     """In a process of its own: whatever a missing display does there, the mesh is safe."""
-    command = ["pvpython", os.path.join(HERE, "mesh_pictures.py"), options.output]
+    python = sys.executable if os.access(sys.executable or "", os.X_OK) else "pvpython"  # which names no file there
+    command = [python, os.path.join(HERE, "mesh_pictures.py"), options.output]
     if shutil.which("xvfb-run"):
         command = ["xvfb-run", "-a"] + command
     done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
@@ -474,7 +477,8 @@ def main(arguments):
     write_results(pm, runner, options, mesh, boundary)
     report = mesh_report.of_mesh(mesh, boundary, validity) + of_stages + mesh_report.of_cost(runner.measured)
     del mesh, boundary
-    make_pictures(options)
+    if not options.no_pictures:
+        make_pictures(options)
     print("\n".join(report), flush=True)
     print(f"Results are in {options.output}")
     if validity and validity.GetViolations() > 0:

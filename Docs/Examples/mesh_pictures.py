@@ -232,20 +232,23 @@ def grown(bounds, part):
     return [m + s * h for m, h in zip(middle, half) for s in (-1, 1)]
 
 
+def surface_picture(folder, boundary):
+    """Draws the boundary; returns the box that is worth a section."""
+    field = boundary.GetFieldData().GetAbstractArray("PatchNames")
+    names = [field.GetValue(i) for i in range(field.GetNumberOfValues())]
+    patches = shown_patches(boundary)
+    shown = only_patches(boundary, patches)
+    surface(shown, names, patches, os.path.join(folder, "surface.png"))
+    whole = shown.GetNumberOfCells() == boundary.GetNumberOfCells()
+    return shown.GetBounds() if whole else grown(shown.GetBounds(), 0.25)
+
+
 def main(folder):
-    grid = read(vtkXMLUnstructuredGridReader(), os.path.join(folder, "mesh.vtu"))
-    focus = grid.GetBounds()
-    boundary_file = os.path.join(folder, "boundary.vtp")
+    boundary_file, focus = os.path.join(folder, "boundary.vtp"), None
     if os.path.exists(boundary_file):
-        boundary = read(vtkXMLPolyDataReader(), boundary_file)
-        field = boundary.GetFieldData().GetAbstractArray("PatchNames")
-        names = [field.GetValue(i) for i in range(field.GetNumberOfValues())]
-        patches = shown_patches(boundary)
-        shown = only_patches(boundary, patches)
-        surface(shown, names, patches, os.path.join(folder, "surface.png"))
-        whole = shown.GetNumberOfCells() == boundary.GetNumberOfCells()
-        focus = shown.GetBounds() if whole else grown(shown.GetBounds(), 0.25)
-    section(grid, focus, os.path.join(folder, "section.png"))
+        focus = surface_picture(folder, read(vtkXMLPolyDataReader(), boundary_file))
+    grid = read(vtkXMLUnstructuredGridReader(), os.path.join(folder, "mesh.vtu"))
+    section(grid, focus or grid.GetBounds(), os.path.join(folder, "section.png"))
 
 
 if __name__ == "__main__":

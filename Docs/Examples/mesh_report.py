@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The table that mesh.py prints: what the mesh consists of, how good it is and what it cost."""
 import collections
+import ctypes
 
 from vtkmodules.vtkCommonDataModel import (VTK_HEXAHEDRON, VTK_POLYHEDRON, VTK_PYRAMID, VTK_TETRA, VTK_VOXEL,
                                            VTK_WEDGE)
@@ -24,6 +25,16 @@ def reset_peak_memory():
             control.write("5")
     except OSError:
         pass  # then a stage's peak includes those before it
+
+
+def return_memory():
+    """What malloc holds of freed arrays goes back to the system; large ones do from now on when they are freed."""
+    try:
+        libc, mmap_threshold = ctypes.CDLL(None), -3
+        libc.mallopt(mmap_threshold, 1 << 20)
+        libc.malloc_trim(0)
+    except (OSError, AttributeError):
+        pass  # a C library that is not GNU's
 
 
 def rows(title, pairs):

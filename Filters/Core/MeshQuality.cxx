@@ -247,13 +247,10 @@ double boundarySkewness(const std::vector<Vec3>& points, Span<Id> row, const Fac
   return skewness(points, row, face, toFace, d, 0.4 * d.norm());
 }
 
-MeshMeasures measure(const PolyMesh& mesh) {
+namespace {
+
+void measureCells(const PolyMesh& mesh, MeshMeasures& m) {
   const Csr<Id> facesOfCell = cellFaces(mesh);
-  MeshMeasures m;
-  m.faces.resize(mesh.faceCount());
-  forBlocks(mesh.faceCount(), [&](Id first, Id last) {
-    for (Id f = first; f < last; ++f) m.faces[f] = measureFace(mesh.points, mesh.faces[f]);
-  });
   m.cells.resize(mesh.cellCount);
   m.openness.resize(mesh.cellCount);
   forBlocks(mesh.cellCount, [&](Id first, Id last) {
@@ -266,6 +263,10 @@ MeshMeasures measure(const PolyMesh& mesh) {
       m.openness[c] = static_cast<float>(openness(mesh, c, facesOfCell[c], m.faces));
     }
   });
+}
+
+/// Angle and skewness of faces, from the centres of their cells.
+void measureBetween(const PolyMesh& mesh, MeshMeasures& m) {
   m.faceAngle.resize(mesh.faceCount());
   m.faceSkew.resize(mesh.faceCount());
   const Id internal = mesh.internalFaces();
@@ -282,6 +283,18 @@ MeshMeasures measure(const PolyMesh& mesh) {
                        : boundarySkewness(mesh.points, mesh.faces[f], face, foamOwn));
     }
   });
+}
+
+}  // namespace
+
+MeshMeasures measure(const PolyMesh& mesh) {
+  MeshMeasures m;
+  m.faces.resize(mesh.faceCount());
+  forBlocks(mesh.faceCount(), [&](Id first, Id last) {
+    for (Id f = first; f < last; ++f) m.faces[f] = measureFace(mesh.points, mesh.faces[f]);
+  });
+  measureCells(mesh, m);
+  measureBetween(mesh, m);
   return m;
 }
 

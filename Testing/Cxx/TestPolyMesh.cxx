@@ -76,6 +76,34 @@ TEST(PolyMesh, CanonicalOrderForgetsTheOrderBefore) {
   }
 }
 
+/// Cells in their order, but the faces of each the other way round, as a reader of cells may find them.
+PolyMesh reversedWithinCells(const PolyMesh& mesh) {
+  PolyMesh out = mesh;
+  out.faces.clear();
+  const Id internal = mesh.internalFaces();
+  for (Id first = 0, last; first < mesh.faceCount(); first = last) {
+    const Id end = first < internal ? internal : mesh.faceCount();
+    for (last = first; last < end && mesh.owner[last] == mesh.owner[first];) ++last;
+    for (Id i = first; i < last; ++i) {
+      const Id f = last - 1 - (i - first);
+      out.faces.push(mesh.faces[f]);
+      if (i < internal) out.neighbour[i] = mesh.neighbour[f];
+      if (i >= internal) out.patch[i - internal] = mesh.patch[f - internal];
+    }
+  }
+  return out;
+}
+
+TEST(PolyMesh, FacesOutOfOrderWithinTheirCells) {
+  for (const PolyMesh& mesh : {block(), withHole()}) {
+    PolyMesh other = reversedWithinCells(mesh);
+    ASSERT_NE(other.faces.values, mesh.faces.values);
+    ASSERT_NE(other.neighbour, mesh.neighbour);
+    canonicalise(other);
+    expectEqual(mesh, other);
+  }
+}
+
 TEST(PolyMesh, BoundaryFacesKeepPatchAndOrientation) {
   PolyMesh mesh = shuffled(block(), 7);
   canonicalise(mesh);

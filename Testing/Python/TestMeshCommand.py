@@ -144,6 +144,12 @@ class MeshCommand(unittest.TestCase):
             volume = float(re.search(r"total volume +(\S+)", done.stdout).group(1))
             self.assertGreater(volume, 2.0)
 
+    def test_without_pictures(self):
+        done = mesh(CLEAN, "-o", self.out, "--feature-size", "0.006", "--stop-after", "octree", "--no-pictures")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, r"voxels +[1-9]")
+        self.assertEqual(os.listdir(self.out), ["mesh.vtu"])
+
     def test_gzipped_input_gives_the_same_mesh(self):
         packed = self.path("packed.stl.gz")
         with open(CLEAN, "rb") as plain, gzip.open(packed, "wb") as file:

@@ -5,6 +5,7 @@ import tempfile
 import unittest
 
 from support import Messages, STAGES, WITH_GEOMETRY, box, chain, differences, pm, sphere
+from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
 
 # Not passed on by the later filters.
@@ -66,6 +67,26 @@ class TestProjectionMesh(unittest.TestCase):
                 again.Update()
                 self.assertGreater(again.GetOutput().GetNumberOfCells(), 0)
                 self.assertSame(after, again)
+
+    def test_a_mesh_nobody_wants_is_freed_when_it_has_been_read(self):
+        geometry = box(1, 0.8, 0.6)
+        kept = chain(geometry, 0.1)
+        grid = vtkUnstructuredGrid()
+        grid.DeepCopy(kept[0].GetOutput())
+        for name, expected in zip(STAGES[1:], kept[1:]):
+            stage = getattr(pm, name)()
+            stage.SetInputDataObject(0, grid)
+            stage.GetInputAlgorithm(0, 0).ReleaseDataFlagOn()
+            if name in WITH_GEOMETRY:
+                stage.SetInputDataObject(WITH_GEOMETRY[name], geometry)
+            left = []  # cells of the input as the stage goes on
+            stage.AddObserver("ProgressEvent", lambda *_, data=grid, cells=left: cells.append(data.GetNumberOfCells()))
+            stage.Update()
+            self.assertSame(stage, expected)
+            self.assertEqual(left[-1], 0)
+            grid = stage.GetOutput()
+        for stage in kept:  # of these nobody said so
+            self.assertGreater(stage.GetOutput().GetNumberOfCells(), 0)
 
     def test_report(self):
         mesh = one_filter(box(), 0.12)
