@@ -83,20 +83,25 @@ void vtkMeshValidity::Run(vtkInformationVector** inputs, vtkUnstructuredGrid* gr
   *this->Found = Findings();
   vtkUnstructuredGrid* input = vtkUnstructuredGrid::GetData(inputs[0]);
   const pm::PolyMesh mesh = pm::unpackMesh(input, "Mesh Validity", {});
+  this->Found->internalFaces = mesh.internalFaces();
+  this->Found->boundaryFaces = mesh.boundaryFaces();
+  this->Found->description = pm::checkTopology(mesh);
   monitor.check(0.3, "measuring");
+  grid->ShallowCopy(input);
+  this->Measure(mesh, grid);
+  monitor.check(0.9, "storing the boundary");
+  pm::packBoundary(mesh, boundary);
+}
+
+void vtkMeshValidity::Measure(const pm::PolyMesh& mesh, vtkUnstructuredGrid* grid) {
   const pm::MeshMeasures measures = pm::measure(mesh);
   pm::QualityLimits limits = this->Limits();
   if (mesh.stage == pm::Stage::Refined) limits.minVolume = limits.minEtaInternal = limits.minEtaBoundary = 0;
   this->Found->summary = pm::summarise(mesh, measures, limits);
-  this->Found->description = pm::checkTopology(mesh) + pm::describeViolations(mesh, measures, limits);
+  this->Found->description += pm::describeViolations(mesh, measures, limits);
   if (this->Found->summary.violations == 0 && !this->Found->description.empty())
     this->Found->summary.violations = 1;
-  this->Found->internalFaces = mesh.internalFaces();
-  this->Found->boundaryFaces = mesh.boundaryFaces();
-  monitor.check(0.8, "storing measures");
-  grid->ShallowCopy(input);
   addMeasures(mesh, measures, grid);
-  pm::packBoundary(mesh, boundary);
 }
 
 vtkIdType vtkMeshValidity::GetViolations() const { return this->Found->summary.violations; }

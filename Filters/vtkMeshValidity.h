@@ -57,6 +57,9 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkMeshValidity : public vtkValidMeshStage 
   vtkMeshValidity(const vtkMeshValidity&) = delete;
   void operator=(const vtkMeshValidity&) = delete;
 
+  /// Fills the findings and adds the measures to the grid.
+  void Measure(const pm::PolyMesh& mesh, vtkUnstructuredGrid* grid);
+
   struct Findings;
   std::unique_ptr<Findings> Found;
 };
