@@ -279,6 +279,13 @@ std::vector<Id> matchHalfFaces(const HalfFaces& half, Id points, const std::stri
   return twin;
 }
 
+/// Room that is not used costs nothing; without it the first faces that a stage adds would copy the mesh's,
+/// at the stage's peak of memory.
+void resizeWithRoom(std::vector<Id>& values, std::size_t size) {
+  values.reserve(size + size / 16);
+  values.resize(size, 0);
+}
+
 /// Faces with owner and neighbour from half faces; internal ones first, each from the smaller cell's side.
 void joinHalfFaces(const HalfFaces& half, const std::vector<Id>& twin, PolyMesh& mesh) {
   const Id count = static_cast<Id>(twin.size());
@@ -292,9 +299,9 @@ void joinHalfFaces(const HalfFaces& half, const std::vector<Id>& twin, PolyMesh&
     if (twin[h] == kNone) order.push_back(h);
   }
   const Id faces = static_cast<Id>(order.size());
-  mesh.owner.resize(faces);
   mesh.neighbour.resize(internal);
-  mesh.faces.offsets.assign(faces + 1, 0);
+  resizeWithRoom(mesh.owner, faces);
+  resizeWithRoom(mesh.faces.offsets, faces + 1);
   const auto forRows = [&](const auto& body) {
     tbb::parallel_for(tbb::blocked_range<Id>(0, faces, 1024), [&](const tbb::blocked_range<Id>& range) {
       std::vector<Id> row;
@@ -310,7 +317,7 @@ void joinHalfFaces(const HalfFaces& half, const std::vector<Id>& twin, PolyMesh&
     mesh.faces.offsets[f] = static_cast<Id>(row.size());
   });
   prefixSum(mesh.faces.offsets);
-  mesh.faces.values.resize(mesh.faces.offsets.back());
+  resizeWithRoom(mesh.faces.values, mesh.faces.offsets.back());
   forRows([&](Id f, const std::vector<Id>& row) {
     std::copy(row.begin(), row.end(), mesh.faces.values.begin() + mesh.faces.offsets[f]);
   });

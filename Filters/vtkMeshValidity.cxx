@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkMeshValidity.h"
 
-#include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "MeshPacking.h"
@@ -27,19 +27,21 @@ vtkMeshValidity::~vtkMeshValidity() = default;
 
 namespace {
 
-void addCellArray(vtkUnstructuredGrid* grid, const char* name, const std::vector<float>& values) {
+/// A cell array of `count` values, `start` to begin with.
+float* addCellArray(vtkUnstructuredGrid* grid, const char* name, pm::Id count, float start) {
   vtkNew<vtkFloatArray> array;
   array->SetName(name);
-  array->SetNumberOfValues(static_cast<vtkIdType>(values.size()));
-  std::copy(values.begin(), values.end(), array->GetPointer(0));
+  array->SetNumberOfValues(count);
+  array->FillValue(start);
   grid->GetCellData()->AddArray(array);
+  return array->GetPointer(0);
 }
 
 /// For each cell the worst value of its faces; worse(a, b): a is worse than b.
 template <class Value, class Worse>
-std::vector<float> worstOfFaces(const pm::PolyMesh& mesh, float best, const Value& value,
-                                const Worse& worse) {
-  std::vector<float> result(mesh.cellCount, best);
+void addWorstOfFaces(const pm::PolyMesh& mesh, vtkUnstructuredGrid* grid, const char* name, float best,
+                     const Value& value, const Worse& worse) {
+  float* result = addCellArray(grid, name, mesh.cellCount, best);
   for (pm::Id f = 0; f < mesh.faceCount(); ++f) {
     const float v = static_cast<float>(value(f));
     const auto take = [&](pm::Id cell) {
@@ -48,32 +50,31 @@ std::vector<float> worstOfFaces(const pm::PolyMesh& mesh, float best, const Valu
     take(mesh.owner[f]);
     if (f < mesh.internalFaces()) take(mesh.neighbour[f]);
   }
-  return result;
 }
 
-void addMeasures(const pm::PolyMesh& mesh, const pm::MeshMeasures& m, vtkUnstructuredGrid* grid) {
+/// Frees the measures of cells, which need more room than all these arrays, once they are stored.
+void addMeasures(const pm::PolyMesh& mesh, pm::MeshMeasures m, vtkUnstructuredGrid* grid) {
   const double unit = mesh.finestSize > 0 ? mesh.finestSize * mesh.finestSize * mesh.finestSize : 1.0;
-  std::vector<float> volume(mesh.cellCount), tet(mesh.cellCount);
+  float* volume = addCellArray(grid, "CellVolume", mesh.cellCount, 0);
+  float* tet = addCellArray(grid, "SmallestTet", mesh.cellCount, 0);
   for (pm::Id c = 0; c < mesh.cellCount; ++c) {
     volume[c] = static_cast<float>(m.cells[c].volume / unit);
     tet[c] = static_cast<float>(m.cells[c].minTet / unit);
   }
+  m.cells = std::vector<pm::CellMeasures>();
   const auto larger = [](float a, float b) { return a > b; };
   const auto smaller = [](float a, float b) { return a < b; };
-  addCellArray(grid, "CellVolume", volume);
-  addCellArray(grid, "SmallestTet", tet);
-  addCellArray(grid, "Degradation",
-               worstOfFaces(
-                   mesh, 1.0f, [&](pm::Id f) { return m.faces[f].eta; }, smaller));
-  addCellArray(grid, "Angle",
-               worstOfFaces(
-                   mesh, 0.0f, [&](pm::Id f) { return m.faceAngle[f]; }, larger));
-  addCellArray(grid, "Warpage",
-               worstOfFaces(
-                   mesh, 0.0f, [&](pm::Id f) { return m.faces[f].warpage(); }, larger));
-  addCellArray(grid, "Skewness",
-               worstOfFaces(
-                   mesh, 0.0f, [&](pm::Id f) { return m.faceSkew[f]; }, larger));
+  const auto add = [&](const char* name, float best, const auto& value, const auto& worse) {
+    addWorstOfFaces(mesh, grid, name, best, value, worse);
+  };
+  add(
+      "Degradation", 1, [&](pm::Id f) { return m.faces[f].eta; }, smaller);
+  add(
+      "Angle", 0, [&](pm::Id f) { return m.faceAngle[f]; }, larger);
+  add(
+      "Warpage", 0, [&](pm::Id f) { return m.faces[f].warpage(); }, larger);
+  add(
+      "Skewness", 0, [&](pm::Id f) { return m.faceSkew[f]; }, larger);
 }
 
 }  // namespace
@@ -94,14 +95,14 @@ void vtkMeshValidity::Run(vtkInformationVector** inputs, vtkUnstructuredGrid* gr
 }
 
 void vtkMeshValidity::Measure(const pm::PolyMesh& mesh, vtkUnstructuredGrid* grid) {
-  const pm::MeshMeasures measures = pm::measure(mesh);
+  pm::MeshMeasures measures = pm::measure(mesh);
   pm::QualityLimits limits = this->Limits();
   if (mesh.stage == pm::Stage::Refined) limits.minVolume = limits.minEtaInternal = limits.minEtaBoundary = 0;
   this->Found->summary = pm::summarise(mesh, measures, limits);
   this->Found->description += pm::describeViolations(mesh, measures, limits);
   if (this->Found->summary.violations == 0 && !this->Found->description.empty())
     this->Found->summary.violations = 1;
-  addMeasures(mesh, measures, grid);
+  addMeasures(mesh, std::move(measures), grid);
 }
 
 vtkIdType vtkMeshValidity::GetViolations() const { return this->Found->summary.violations; }
