@@ -17,6 +17,7 @@ from projection_mesher import ProjectionMesherFilters as pm
 
 sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Docs", "Examples"))
 import mesh as command  # noqa: E402  only now can it be found
+import mesh_report  # noqa: E402
 
 
 def arguments():
@@ -31,26 +32,31 @@ def arguments():
 
 def cost(action):
     """Processor seconds of all threads, and the peak in MB while it runs."""
-    command.reset_peak_memory()
+    mesh_report.return_memory()
+    mesh_report.reset_peak_memory()
     before = sum(resource.getrusage(resource.RUSAGE_SELF)[:2])
     start = time.perf_counter()
     action()
-    return sum(resource.getrusage(resource.RUSAGE_SELF)[:2]) - before, time.perf_counter() - start, command.peak_memory()
+    return sum(resource.getrusage(resource.RUSAGE_SELF)[:2]) - before, time.perf_counter() - start, mesh_report.peak_memory()
+
+
+class Costs:
+    """Runs steps in place of mesh.py's Runner; rows of name, seconds, by the clock, MB."""
+
+    def __init__(self):
+        self.rows = []
+
+    def run(self, name, algorithm):
+        self.rows.append((name, *cost(algorithm.Update)))
 
 
 def chain(geometry, size, threads, others):
     """(name, seconds, by the clock, MB) of each stage, and the mesh."""
-    options = command.parser().parse_args([geometry, "--feature-size", str(size), "--threads", threads] + others)
-    reader = pm.vtkSurfaceReader()
-    reader.SetFileName(geometry)
-    rows = [("reading", *cost(reader.Update))]
-    grid, surface = None, reader.GetOutputDataObject(0)
-    for name, stage in zip(command.STAGES, command.make_filters(pm, options)):
-        for port, data in enumerate([d for d in (grid, surface) if d is not None][:stage.GetNumberOfInputPorts()]):
-            stage.SetInputDataObject(port, data)
-        rows.append((name, *cost(stage.Update)))
-        grid = stage.GetOutputDataObject(0)
-    return rows, grid
+    costs = Costs()
+    with tempfile.TemporaryDirectory() as folder:
+        options = command.parser().parse_args([geometry, "--feature-size", str(size), "--threads", threads, "-o", folder] + others)
+        grid, _, _ = command.mesh_geometry(pm, costs, options, command.read_geometry(pm, costs, options))
+    return costs.rows, grid
 
 
 def afterwards(grid, threads):
