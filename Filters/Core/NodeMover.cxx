@@ -83,9 +83,11 @@ NodeMover::NodeMover(PolyMesh& mesh, const QualityLimits& limits, MoverRegion re
       // A hair above zero, so that no tetrahedron is flat to rounding.
       minTet_(std::max(limits.minTet, 1e-6) * std::pow(mesh.finestSize, 3)),
       region_(std::move(region)),
-      faces_(region_.faces),
       cells_(region_.cellsAndRim),
       changed_(region_.cells) {
+  faces_.reserve(region_.faces +
+                 region_.faces / 16);  // unused room costs nothing; later growth would copy all
+  faces_.resize(region_.faces);
   const auto forEachFace = [&](const auto& body) {
     tbb::parallel_for(Id(0), mesh_.faceCount(), [&](Id f) {
       if (region_.faceSlot[f] != kNone) body(f, face(f));
