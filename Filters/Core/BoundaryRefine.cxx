@@ -134,11 +134,13 @@ struct PlannedLayers {
 void raiseAgain(LayerColumns& columns, LayerPoints& points, LayerCheck& check,
                 const std::vector<PlannedLayers>& planned, Monitor& monitor) {
   std::vector<Id> around;
-  const auto faultsWith = [&](Id c, Id layers) {
+  LayerTrial trial = check.trial();
+  const auto measureWith = [&](Id c, Id layers) {
     columns.setLayers(c, layers, columns.reason(c));
     columns.updateEdges({c});
     for (Id b : columns.ring(c)) points.follow(b);
-    return check.countFaults(around);
+    trial.gather(around);
+    return trial.cost();
   };
   std::vector<Id> todo = allColumns(columns);  // later those around which something has changed
   while (!todo.empty()) {
@@ -150,8 +152,8 @@ void raiseAgain(LayerColumns& columns, LayerPoints& points, LayerCheck& check,
       columns.forEachBeside(c, [&](Id other) { graded = graded && columns.layers(other) >= layers; });
       if (!graded) continue;
       columns.around(c, around);
-      if (faultsWith(c, layers + 1) > 0) {
-        faultsWith(c, layers);
+      if (measureWith(c, layers + 1) > 0) {
+        measureWith(c, layers);
         continue;
       }
       raised.push_back(c);

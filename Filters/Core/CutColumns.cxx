@@ -6,8 +6,8 @@
 
 #include <algorithm>
 
-#include "LayerCheck.h"
 #include "LayerColumns.h"
+#include "LayerLimits.h"
 
 namespace pm {
 namespace {
@@ -208,7 +208,7 @@ class PrismSplitter {
 class SplitCheck {
  public:
   SplitCheck(const PolyMesh& mesh, const QualityLimits& limits)
-      : mesh_(mesh), limits_(limits), cellFaces_(cellFaces(mesh)), prisms_(mesh.cellCount) {}
+      : mesh_(mesh), limits_(limits, mesh.finestSize), cellFaces_(cellFaces(mesh)), prisms_(mesh.cellCount) {}
 
   void add(Id cell, Id prism) {
     if (prisms_[cell].empty()) cells_.push_back(cell);
@@ -254,21 +254,21 @@ class SplitCheck {
     });
   }
   bool holds(Id cell) const {
-    if (!cellHolds(measures_[cell], limits_, mesh_.finestSize)) return false;
+    if (limits_.ofCell(measures_[cell])) return false;
     for (Id f : cellFaces_[cell]) {
       const bool inner = f < mesh_.internalFaces();
       const CellCentres owner(measures_[mesh_.owner[f]]);
       const CellCentres next = inner ? CellCentres(measures_[mesh_.neighbour[f]]) : CellCentres();
-      if (!(faces_[f].eta >= (inner ? limits_.minEtaInternal : limits_.minEtaBoundary))) return false;
-      if (faceFault(mesh_.points, mesh_.faces[f], faces_[f], owner, inner ? &next : nullptr, limits_) !=
-          LayerReason::None)
+      const QualityLimits& values = limits_.values();
+      if (limits_.ofShape(faces_[f], inner ? values.minEtaInternal : values.minEtaBoundary) ||
+          limits_.ofFace(mesh_.points, mesh_.faces[f], faces_[f], owner, inner ? &next : nullptr))
         return false;
     }
     return true;
   }
 
   const PolyMesh& mesh_;
-  QualityLimits limits_;
+  LayerLimits limits_;
   Csr<Id> cellFaces_;
   std::vector<std::vector<Id>> prisms_;  // of each cell: those that touch it
   std::vector<Id> cells_;

@@ -11,11 +11,16 @@ namespace pm {
 namespace {
 
 template <class Body>
-void forEach(std::size_t count, const Body& body) {
+void forRanges(std::size_t count, const Body& body) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 256),
-                    [&](const tbb::blocked_range<std::size_t>& range) {
-                      for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
-                    });
+                    [&](const auto& range) { body(range.begin(), range.end()); });
+}
+
+template <class Body>
+void forEach(std::size_t count, const Body& body) {
+  forRanges(count, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) body(i);
+  });
 }
 
 Span<Id> span(const std::vector<Id>& row) { return {row.data(), row.data() + row.size()}; }
@@ -24,32 +29,6 @@ void sortUnique(std::vector<Id>& ids) {
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
 }
-
-/// The faces of one cell, kept between cells so that nothing is allocated in the loop.
-struct CellFaces {
-  Csr<Id> rows;
-  std::vector<int> signs;
-  std::vector<Vec3> centres;
-  std::vector<Id> row, points;
-
-  void clear() {
-    rows.clear();
-    signs.clear();
-  }
-  void add(int sign) {
-    rows.push(row);
-    signs.push_back(sign);
-  }
-  CellMeasures measure(const std::vector<Vec3>& all) {
-    centres.clear();
-    for (Id i = 0; i < rows.rows(); ++i) centres.push_back(measureFace(all, rows[i], true).centre);
-    points = rows.values;
-    sortUnique(points);
-    return measureCell(all, span(points), [&](const auto& body) {
-      for (Id i = 0; i < rows.rows(); ++i) body(rows[i], signs[i], centres[i]);
-    });
-  }
-};
 
 }  // namespace
 
@@ -70,37 +49,15 @@ const char* describe(LayerReason reason) {
   return kWords[static_cast<int>(reason)];
 }
 
-LayerReason faceFault(const std::vector<Vec3>& points, Span<Id> row, const FaceMeasures& face,
-                      const CellCentres& owner, const CellCentres* neighbour, const QualityLimits& limits) {
-  if (face.warpage() > limits.maxWarpage) return LayerReason::Warpage;
-  if (neighbour == nullptr) {
-    if (faceAngle(face.normal, face.centre - owner.thesis) > limits.maxAngleBoundary)
-      return LayerReason::AngleBoundary;
-    return boundarySkewness(points, row, face, owner.foam) > limits.maxSkewBoundary ? LayerReason::Skewness
-                                                                                    : LayerReason::None;
-  }
-  if (faceAngle(face.normal, neighbour->thesis - owner.thesis) > limits.maxAngleInternal ||
-      faceAngle(face.normal, neighbour->foam - owner.foam) > limits.maxAngleInternal)
-    return LayerReason::AngleInternal;
-  return internalSkewness(points, row, face, owner.foam, neighbour->foam) > limits.maxSkewInternal
-             ? LayerReason::Skewness
-             : LayerReason::None;
-}
-
-bool cellHolds(const CellMeasures& cell, const QualityLimits& limits, double unit) {
-  // A hair above zero, so that rounding in another program does not find it negative.
-  const double least = std::max(limits.minTet * unit * unit * unit, 1e-6 * cell.volume);
-  return cell.volume > 0 && std::min(cell.minTet, cell.minPyramid) > least;
-}
-
 LayerCheck::LayerCheck(const PolyMesh& mesh, const LayerColumns& columns, const std::vector<Vec3>& points,
                        const QualityLimits& limits)
-    : mesh_(mesh), columns_(columns), points_(points), limits_(limits) {
-  centreStart_.assign(1, 0);
-  for (Id c = 0; c < columns.count(); ++c) centreStart_.push_back(centreStart_.back() + columns.layers(c));
-  centres_.resize(centreStart_.back());
+    : mesh_(mesh), columns_(columns), points_(points), limits_(limits, mesh.finestSize) {
+  centres_.start.assign(1, 0);
+  for (Id c = 0; c < columns.count(); ++c)
+    centres_.start.push_back(centres_.start.back() + columns.layers(c));
+  centres_.ofColumns.resize(centres_.start.back());
+  centres_.ofOtherCells.resize(mesh.cellCount);
   seen_.assign(mesh.faceCount(), 0);
-  otherCentres_.resize(mesh.cellCount);
   std::vector<Id> beside;
   for (Id f = 0; f < mesh.internalFaces(); ++f) {
     const Id a = mesh.owner[f], b = mesh.neighbour[f];
@@ -112,73 +69,51 @@ LayerCheck::LayerCheck(const PolyMesh& mesh, const LayerColumns& columns, const 
 }
 
 void LayerCheck::measureBeside(Id cell) {
-  thread_local CellFaces faces;
-  faces.clear();
-  for (Id f : columns_.facesOf(cell)) {
-    faces.row.assign(mesh_.faces[f].begin(), mesh_.faces[f].end());
-    faces.add(mesh_.owner[f] == cell ? 1 : -1);
+  thread_local std::vector<Vec3> faceCentres;
+  thread_local std::vector<Id> cellPoints;
+  const Span<Id> faces = columns_.facesOf(cell);
+  faceCentres.clear();
+  cellPoints.clear();
+  for (Id f : faces) {
+    faceCentres.push_back(measureFace(points_, mesh_.faces[f], true).centre);
+    cellPoints.insert(cellPoints.end(), mesh_.faces[f].begin(), mesh_.faces[f].end());
   }
-  otherCentres_[cell] = CellCentres(faces.measure(points_));
+  sortUnique(cellPoints);
+  const CellMeasures m = measureCell(points_, span(cellPoints), [&](const auto& body) {
+    for (std::size_t i = 0; i < faces.size(); ++i)
+      body(mesh_.faces[faces[i]], mesh_.owner[faces[i]] == cell ? 1 : -1, faceCentres[i]);
+  });
+  centres_.ofOtherCells[cell] = CellCentres(m);
 }
 
-const CellCentres& LayerCheck::centre(Id cell, Id layer) const {
-  const Id column = columns_.columnOf(cell);
-  return column == kNone ? otherCentres_[cell] : centres_[centreStart_[column] + layer - 1];
-}
-
-/// Centres of the column's cells; false when a central tetrahedron is too small.
-bool LayerCheck::measureColumn(Id column) {
-  thread_local CellFaces faces;
-  const Id cell = columns_.cell(column), layers = columns_.layers(column);
-  bool good = true;
-  for (Id layer = 1; layer <= layers; ++layer) {
-    faces.clear();
-    for (Id f : columns_.facesOf(cell)) {
-      const Id pieces = columns_.pieces(f);
-      for (Id piece = 1; piece <= pieces; ++piece) {
-        if (columns_.layerAt(cell, f, piece) != layer) continue;
-        columns_.pieceRow(f, piece, faces.row);
-        faces.add(mesh_.owner[f] == cell ? 1 : -1);
-      }
-    }
-    for (Id level : {layer - 1, layer}) {
-      if (level == 0 || level == layers) continue;
-      columns_.capRow(column, level, faces.row);
-      faces.add(level < layer ? 1 : -1);
-    }
-    const CellMeasures m = faces.measure(points_);
-    centres_[centreStart_[column] + layer - 1] = CellCentres(m);
-    good = good && cellHolds(m, limits_, mesh_.finestSize);
-  }
-  return good;
-}
-
-LayerReason LayerCheck::capFault(Id column) const {
+LayerReason LayerCheck::capFault(Id column) {
   thread_local std::vector<Id> row;
   const Id cell = columns_.cell(column);
   for (Id level = 1; level < columns_.layers(column); ++level) {
     columns_.capRow(column, level, row);
     const FaceMeasures face = measureFace(points_, span(row));
-    if (!(face.eta >= limits_.minEtaInternal)) return LayerReason::FaceShape;
-    const LayerReason fault =
-        faceFault(points_, span(row), face, centre(cell, level + 1), &centre(cell, level), limits_);
-    if (fault != LayerReason::None) return fault;
+    if (const LayerFault fault = limits_.ofShape(face, limits_.values().minEtaInternal)) return fault.reason;
+    const CellCentres* below = &centres_.at(columns_, cell, level);
+    if (const LayerFault fault =
+            limits_.ofFace(points_, span(row), face, centres_.at(columns_, cell, level + 1), below))
+      return fault.reason;
   }
   return LayerReason::None;
 }
 
-LayerReason LayerCheck::faultOf(Id face) const {
+LayerReason LayerCheck::faultOf(Id face) {
   thread_local std::vector<Id> row;
   const bool inner = face < mesh_.internalFaces();
   const Id own = mesh_.owner[face], next = inner ? mesh_.neighbour[face] : kNone;
   const Id pieces = columns_.pieces(face);
   for (Id piece = 1; piece <= pieces; ++piece) {
     columns_.pieceRow(face, piece, row);
-    const CellCentres* neighbour = inner ? &centre(next, columns_.layerAt(next, face, piece)) : nullptr;
-    const CellCentres& owner = centre(own, columns_.layerAt(own, face, piece));
-    const LayerReason fault =
-        faceFault(points_, span(row), measureFace(points_, span(row)), owner, neighbour, limits_);
-    if (fault != LayerReason::None) return fault;
+    const CellCentres* neighbour =
+        inner ? &centres_.at(columns_, next, columns_.layerAt(next, face, piece)) : nullptr;
+    const CellCentres& owner = centres_.at(columns_, own, columns_.layerAt(own, face, piece));
+    if (const LayerFault fault =
+            limits_.ofFace(points_, span(row), measureFace(points_, span(row)), owner, neighbour))
+      return fault.reason;
   }
   return LayerReason::None;
 }
@@ -211,18 +146,14 @@ std::vector<Id> LayerCheck::facesAround(const std::vector<Id>& changed) {
   return faces;
 }
 
-int LayerCheck::countFaults(const std::vector<Id>& columns) {
-  int count = 0;
-  for (Id c : columns) count += !measureColumn(c);
-  for (Id c : columns) count += capFault(c) != LayerReason::None;
-  for (Id f : facesAround(columns)) count += faultOf(f) != LayerReason::None;
-  return count;
-}
-
 std::vector<LayerCheck::Fault> LayerCheck::columnsToLower(const std::vector<Id>& changed) {
   std::vector<LayerReason> ofColumn(changed.size(), LayerReason::None);
-  forEach(changed.size(), [&](std::size_t i) {
-    if (!measureColumn(changed[i])) ofColumn[i] = LayerReason::FoldedCell;
+  forRanges(changed.size(), [&](std::size_t first, std::size_t last) {
+    LayerTrial own = trial();
+    for (std::size_t i = first; i < last; ++i) {
+      own.gather({changed[i]});
+      ofColumn[i] = own.measureCells();
+    }
   });
   forEach(changed.size(), [&](std::size_t i) {
     if (ofColumn[i] == LayerReason::None) ofColumn[i] = capFault(changed[i]);

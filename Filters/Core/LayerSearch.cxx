@@ -6,7 +6,8 @@
 namespace pm {
 namespace {
 
-constexpr int kSearches = 2;  // for one column
+constexpr int kSearches = 2;    // for one column
+constexpr double kGain = 0.01;  // that a change must bring; a face just at its limit costs 1
 
 void sortUnique(std::vector<Id>& ids) {
   std::sort(ids.begin(), ids.end());
@@ -80,49 +81,61 @@ void LayerSearch::mendColumn(Id column) {
     return sight_.cosine(p, mesh_.points[b] - mesh_.points[p]);
   };
   std::stable_sort(ring.begin(), ring.end(), [&](Id a, Id b) { return cosine(a) < cosine(b); });
+  LayerTrial trial = check_.trial();
   for (Id b : ring) {
-    if (faults(own) == 0) return;
-    const std::vector<Id> around(columns_.columnsOf(b).begin(), columns_.columnsOf(b).end());
-    const int left = tryCourses(b, around, faults(around));
-    if (left > 0 && movesEnds_) tryPlaces(b, around, left);
+    trial.gather(own);
+    if (trial.cost() == 0) return;
+    mendEdge(b, trial);
   }
 }
 
-int LayerSearch::tryCourses(Id lower, const std::vector<Id>& around, int faultsNow) {
+void LayerSearch::mendEdge(Id lower, LayerTrial& trial) {
+  const std::vector<Id> around(columns_.columnsOf(lower).begin(), columns_.columnsOf(lower).end());
+  trial.gather(around, lower);
+  double cost = trial.cost();
+  if (cost > 0) cost = tryCourses(lower, around, trial, cost);
+  if (cost > 0 && movesEnds_) cost = tryPlaces(lower, trial, cost);
+  trial.cost();  // brings the centres up to date
+}
+
+double LayerSearch::tryCourses(Id lower, const std::vector<Id>& around, LayerTrial& trial, double cost) {
   const int old = points_.course(lower);
-  int best = old, fewest = faultsNow;
-  for (int course = 0; course < LayerPoints::kCourses && fewest > 0; ++course) {
-    if (course == old || !points_.setCourse(lower, course)) continue;
-    const int n = faults(around);
-    if (n >= fewest) continue;
-    fewest = n;
+  int best = old;
+  const auto take = [&](int course) {
+    const bool pinched = columns_.isPinched(lower);
+    if (!points_.setCourse(lower, course)) return false;
+    if (columns_.isPinched(lower) != pinched) trial.gather(around, lower);
+    return true;
+  };
+  for (int course = 0; course < LayerPoints::kCourses && cost > 0; ++course) {
+    if (course == old || !take(course)) continue;
+    const double now = trial.cost(cost - kGain);
+    if (now > cost - kGain) continue;
+    cost = now;
     best = course;
   }
-  points_.setCourse(lower, best);
-  faults(around);  // brings the measures up to date
+  take(best);
   if (best != old) changed_[lower] = 1;
-  return fewest;
+  return cost;
 }
 
-int LayerSearch::tryPlaces(Id lower, const std::vector<Id>& around, int faultsNow) {
+double LayerSearch::tryPlaces(Id lower, LayerTrial& trial, double cost) {
   const Vec3 old = mesh_.points[lower];
   const Id wall = columns_.wallPoint(lower);
   Vec3 best = old;
-  int fewest = faultsNow;
   for (const Vec3& place : places(mesh_.points[wall], old, sight_.best(wall))) {
-    if (fewest == 0) break;
+    if (cost == 0) break;
     if (!moveTo(lower, place)) continue;
-    const int n = faults(around);
-    if (n < fewest) {
-      fewest = n;
+    const double now = trial.cost(cost - kGain);
+    if (now < cost - kGain) {
+      cost = now;
       best = mesh_.points[lower];
     }
     moveTo(lower, old);
   }
   moveTo(lower, best);
-  faults(around);
   if (mesh_.points[lower] != old) changed_[lower] = 1;
-  return fewest;
+  return cost;
 }
 
 bool LayerSearch::moveTo(Id lower, const Vec3& to) {

@@ -30,10 +30,10 @@ class LayerSearch {
  private:
   static std::vector<Id> lowerEnds(const LayerColumns& columns, const std::vector<Id>& faulty);
   void mendColumn(Id column);
-  int tryCourses(Id lower, const std::vector<Id>& around, int faults);
-  int tryPlaces(Id lower, const std::vector<Id>& around, int faults);
+  void mendEdge(Id lower, LayerTrial& trial);
+  double tryCourses(Id lower, const std::vector<Id>& around, LayerTrial& trial, double cost);
+  double tryPlaces(Id lower, LayerTrial& trial, double cost);
   bool moveTo(Id lower, const Vec3& to);
-  int faults(const std::vector<Id>& columns) { return check_.countFaults(columns); }
 
   PolyMesh& mesh_;
   LayerColumns& columns_;
