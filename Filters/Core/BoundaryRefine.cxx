@@ -17,6 +17,12 @@ namespace pm {
 namespace {
 
 const char* const kChoosing = "choosing layers";
+constexpr int kRounds = 2;  // of search before layers are taken away
+
+void sortUnique(std::vector<Id>& ids) {
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+}
 
 void checkMesh(const PolyMesh& mesh) {
   if (mesh.stage < Stage::Layer || mesh.base.size() != mesh.points.size()) {
@@ -53,8 +59,7 @@ std::vector<Id> grade(LayerColumns& columns, std::vector<Id> changed) {
       changed.push_back(other);
     });
   }
-  std::sort(changed.begin(), changed.end());
-  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+  sortUnique(changed);
   return changed;
 }
 
@@ -176,12 +181,16 @@ void lowerUntilValid(PolyMesh& mesh, LayerColumns& columns, LayerPoints& points,
   LayerSearch search(mesh, columns, points, sight, check, options.limits, columnsOf(faults), monitor);
   search.moveLowerEnds(options.makeRoom);
   while (!faults.empty()) {
-    monitor.check(0.1 + 0.6 * (1 - static_cast<double>(changed.size()) / all), kChoosing);
-    const std::vector<Id> mended = search.mend(columnsOf(faults));
-    changed.insert(changed.end(), mended.begin(), mended.end());
-    std::sort(changed.begin(), changed.end());
-    changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
-    for (const LayerCheck::Fault& fault : faults = check.columnsToLower(touched(columns, changed)))
+    for (int round = 0; round < kRounds; ++round) {
+      monitor.check(0.1 + 0.6 * (1 - static_cast<double>(changed.size()) / all), kChoosing);
+      const std::vector<Id> mended = search.mend(columnsOf(faults));
+      if (mended.empty()) break;
+      changed = columnsOf(faults);
+      changed.insert(changed.end(), mended.begin(), mended.end());
+      sortUnique(changed);
+      faults = check.columnsToLower(touched(columns, changed));
+    }
+    for (const LayerCheck::Fault& fault : faults)
       columns.setLayers(fault.column, columns.layers(fault.column) - 1, fault.reason);
     const std::vector<Id> graded = grade(columns, columnsOf(faults));
     columns.updateEdges(graded);

@@ -13,9 +13,8 @@ constexpr double kLeastSight = 0.1;  // of a wall point whose edge is pinched fr
 struct Course {
   double bend, scale;
 };
-constexpr Course kCourseList[LayerPoints::kCourses] = {{0, 1},    {1, 1},    {1, 0.5},  {0, 0.5},
-                                                       {1, 0.25}, {0, 0.25}, {1, 0.12}, {0, 0}};
-constexpr int kPinched = LayerPoints::kCourses - 1;
+constexpr Course kCourseList[LayerPoints::kCourses] = {{0, 1},   {1, 1},    {1, 0.8},  {0, 0.8},  {1, 0.5},
+                                                       {0, 0.5}, {1, 0.25}, {0, 0.25}, {1, 0.12}, {0, 0}};
 
 }  // namespace
 
@@ -31,6 +30,7 @@ LayerPoints::LayerPoints(const PolyMesh& mesh, LayerColumns& columns, const Wall
   const Id old = static_cast<Id>(mesh.points.size());
   all_.resize(columns.numberPoints(old));
   course_.assign(old, 0);
+  lean_.assign(old, Vec3::Zero());
   std::vector<Id> edges(old, 0);
   for (Id b = 0; b < old; ++b)
     if (columns.wallPoint(b) >= 0) ++edges[columns.wallPoint(b)];
@@ -60,11 +60,10 @@ void LayerPoints::follow(Id lower) {
   const double length = edge.norm();
   const Course course = kCourseList[course_[lower]];
   const double whole = heights_[lower].share > 0 ? heights_[lower].share : length;
+  const Vec3 aside = course.bend * (length * sight_.best(wall) - edge) + length * lean_[lower];
   for (Id i = 0; i < inner; ++i) {
     const double part = course.scale * heights_[lower].sum(i + 1) / whole;
-    const double bend = course.bend * (1 - part);
-    all_[columns_.firstPoint(lower) + i] =
-        mesh_.points[wall] + part * (bend * length * sight_.best(wall) + (1 - bend) * edge);
+    all_[columns_.firstPoint(lower) + i] = mesh_.points[wall] + part * (edge + (1 - part) * aside);
   }
 }
 

@@ -23,7 +23,8 @@ struct EdgeHeights {
 
 class LayerPoints {
  public:
-  static constexpr int kCourses = 8;
+  static constexpr int kCourses = 10, kPinched = kCourses - 1;
+  static constexpr int kFullCourses = 2;  ///< the first ones, with layers as high as wanted
 
   /// heights: #P by lower point. Numbers the points of the columns' edges behind the mesh's own and places
   /// them straight; an edge that sees hardly anything of its wall is pinched. All arguments must outlive
@@ -36,6 +37,13 @@ class LayerPoints {
   int course(Id lower) const { return course_[lower]; }
   /// False when the edge cannot take it: one of several edges that end in one wall point stays as it is.
   bool setCourse(Id lower, int course);
+  /// How far the edge leaves its course to a side, over its length: the direction in which it leaves the
+  /// wall changes by this, and less and less towards its lower end.
+  const Vec3& lean(Id lower) const { return lean_[lower]; }
+  void setLean(Id lower, const Vec3& lean) {
+    lean_[lower] = lean;
+    follow(lower);
+  }
   /// Puts the points of an edge anew after its lower point was moved.
   void follow(Id lower);
 
@@ -46,6 +54,7 @@ class LayerPoints {
   const std::vector<EdgeHeights>& heights_;
   std::vector<Vec3> all_;
   std::vector<std::uint8_t> course_;  // #P
+  std::vector<Vec3> lean_;            // #P
   std::vector<std::uint8_t> single_;  // #P whether a wall point has one prism edge
 };
 

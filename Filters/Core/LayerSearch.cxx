@@ -6,8 +6,10 @@
 namespace pm {
 namespace {
 
-constexpr int kSearches = 2;    // for one column
-constexpr double kGain = 0.01;  // that a change must bring; a face just at its limit costs 1
+constexpr int kSearches = 6;  // for one column
+constexpr double kLeans[] = {0.4, 0.2};
+constexpr double kThinGain = 0.5;
+constexpr double kGain = 0.001;  // that a change must bring; a face just at its limit costs 1
 
 void sortUnique(std::vector<Id>& ids) {
   std::sort(ids.begin(), ids.end());
@@ -93,12 +95,15 @@ void LayerSearch::mendEdge(Id lower, LayerTrial& trial) {
   const std::vector<Id> around(columns_.columnsOf(lower).begin(), columns_.columnsOf(lower).end());
   trial.gather(around, lower);
   double cost = trial.cost();
-  if (cost > 0) cost = tryCourses(lower, around, trial, cost);
+  if (cost > 0) cost = tryCourses(lower, 0, LayerPoints::kFullCourses, around, trial, cost);
+  if (cost > 0 && !columns_.isPinched(lower)) cost = tryLeans(lower, trial, cost);
   if (cost > 0 && movesEnds_) cost = tryPlaces(lower, trial, cost);
+  if (cost > 0) tryCourses(lower, LayerPoints::kFullCourses, LayerPoints::kCourses, around, trial, cost);
   trial.cost();  // brings the centres up to date
 }
 
-double LayerSearch::tryCourses(Id lower, const std::vector<Id>& around, LayerTrial& trial, double cost) {
+double LayerSearch::tryCourses(Id lower, int first, int last, const std::vector<Id>& around,
+                               LayerTrial& trial, double cost) {
   const int old = points_.course(lower);
   int best = old;
   const auto take = [&](int course) {
@@ -107,15 +112,38 @@ double LayerSearch::tryCourses(Id lower, const std::vector<Id>& around, LayerTri
     if (columns_.isPinched(lower) != pinched) trial.gather(around, lower);
     return true;
   };
-  for (int course = 0; course < LayerPoints::kCourses && cost > 0; ++course) {
+  const double gain = first < LayerPoints::kFullCourses ? kGain : kThinGain;
+  for (int course = first; course < last && cost > 0; ++course) {
     if (course == old || !take(course)) continue;
-    const double now = trial.cost(cost - kGain);
-    if (now > cost - kGain) continue;
+    const double now = trial.cost(cost - gain);
+    if (now > cost - gain) continue;
     cost = now;
     best = course;
   }
   take(best);
   if (best != old) changed_[lower] = 1;
+  return cost;
+}
+
+double LayerSearch::tryLeans(Id lower, LayerTrial& trial, double cost) {
+  const Vec3 old = points_.lean(lower);
+  for (double step : kLeans) {
+    const Vec3 from = points_.lean(lower);
+    Vec3 best = from;
+    for (int axis = 0; axis < 3; ++axis) {
+      for (double side : {-step, step}) {
+        if (cost == 0) break;
+        const Vec3 lean = from + side * Vec3::Unit(axis);
+        points_.setLean(lower, lean);
+        const double now = trial.cost(cost - kGain);
+        if (now > cost - kGain) continue;
+        cost = now;
+        best = lean;
+      }
+    }
+    points_.setLean(lower, best);
+  }
+  if (points_.lean(lower) != old) changed_[lower] = 1;
   return cost;
 }
 

@@ -31,7 +31,9 @@ class LayerSearch {
   static std::vector<Id> lowerEnds(const LayerColumns& columns, const std::vector<Id>& faulty);
   void mendColumn(Id column);
   void mendEdge(Id lower, LayerTrial& trial);
-  double tryCourses(Id lower, const std::vector<Id>& around, LayerTrial& trial, double cost);
+  double tryCourses(Id lower, int first, int last, const std::vector<Id>& around, LayerTrial& trial,
+                    double cost);
+  double tryLeans(Id lower, LayerTrial& trial, double cost);
   double tryPlaces(Id lower, LayerTrial& trial, double cost);
   bool moveTo(Id lower, const Vec3& to);
 
