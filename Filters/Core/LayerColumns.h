@@ -30,7 +30,8 @@ class LayerColumns {
   /// Wall faces; none when the column cannot be split.
   Span<Id> roof(Id column) const { return roofs_[column]; }
   bool canSplit(Id column) const { return !roof(column).empty(); }
-  Span<Id> ring(Id column) const { return rings_[column]; }  ///< lower points in the order of the wall
+  Span<Id> ring(Id column) const { return rings_[column]; }       ///< lower points in the order of the wall
+  Id pointCount() const { return static_cast<Id>(top_.size()); }  ///< of the mesh
   Id wallPoint(Id lower) const {
     return top_[lower];
   }  ///< upper end of the edge; negative when there is none

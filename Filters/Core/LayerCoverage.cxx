@@ -4,40 +4,47 @@
 #include <algorithm>
 #include <cmath>
 
+#include "LayerGrowth.h"
 #include "MeshQuality.h"
 
 namespace pm {
 namespace {
 
 constexpr double kWithin = 0.2;  // of the wanted first height
+constexpr double kMost = 0.95;   // of the area
 
-/// Volumes of the layers' cells, 0 for others.
-std::vector<double> layerVolumes(const PolyMesh& mesh) {
-  std::vector<double> volumes(mesh.cellCount, 0.0);
-  std::vector<Id> origin(mesh.cellCount, kNone);  // a point of the cell, so that a far model costs no digits
-  for (Id f = 0; f < mesh.faceCount(); ++f) {
-    const Id own = mesh.owner[f], next = f < mesh.internalFaces() ? mesh.neighbour[f] : own;
-    if (mesh.layer[own] == 0 && mesh.layer[next] == 0) continue;
-    const FaceMeasures m = measureFace(mesh.points, mesh.faces[f], true);
-    const auto add = [&](Id cell, double sign) {
-      if (origin[cell] == kNone) origin[cell] = mesh.faces[f][0];
-      volumes[cell] += sign * m.normal.dot(m.centre - mesh.points[origin[cell]]) / 3;
-    };
-    add(own, 1);
-    if (next != own) add(next, -1);
-  }
-  return volumes;
+/// Volume of all layers of each column.
+std::vector<double> columnVolumes(const PolyMesh& refined, const LayerColumns& columns,
+                                  const LayerCells& cells) {
+  std::vector<double> sums(columns.count(), 0.0);
+  const std::vector<Id> ofCell = columnsOfCells(refined, columns);
+  for (Id cell = 0; cell < refined.cellCount; ++cell)
+    if (ofCell[cell] != kNone) sums[ofCell[cell]] += cells.volumes[cell];
+  return sums;
 }
 
-/// Volume of all layers of each column. Those behind the wall's are the refined mesh's last cells.
-std::vector<double> columnVolumes(const LayerColumns& columns, const std::vector<double>& volumes) {
-  std::vector<double> sums(columns.count(), 0.0);
-  Id behind = static_cast<Id>(volumes.size());
-  for (Id c = columns.count() - 1; c >= 0; --c) {
-    sums[c] = volumes[columns.cell(c)];
-    for (Id layer = 2; layer <= columns.layers(c); ++layer) sums[c] += volumes[--behind];
+/// How high each column's prism is above its wall, on average over its edges; 0 where it is no prism.
+std::vector<double> prismHeights(const PolyMesh& mesh, const LayerColumns& columns) {
+  std::vector<double> heights(columns.count(), 0.0);
+  for (Id c = 0; c < columns.count(); ++c) {
+    if (!columns.canSplit(c)) continue;
+    Vec3 outward = Vec3::Zero(), inward = Vec3::Zero();
+    for (Id f : columns.roof(c)) outward += measureFace(mesh.points, mesh.faces[f], true).normal;
+    for (Id b : columns.ring(c)) inward += mesh.points[b] - mesh.points[columns.wallPoint(b)];
+    heights[c] = -outward.normalized().dot(inward) / static_cast<double>(columns.ring(c).size());
   }
-  return sums;
+  return heights;
+}
+
+/// The value that a share of the weight lies below. pairs: value and weight, in any order.
+double quantile(std::vector<std::pair<double, double>> pairs, double share) {
+  if (pairs.empty()) return 0;
+  std::sort(pairs.begin(), pairs.end());
+  double all = 0, sum = 0;
+  for (const auto& [value, weight] : pairs) all += weight;
+  for (const auto& [value, weight] : pairs)
+    if ((sum += weight) >= share * all) return value;
+  return pairs.back().first;
 }
 
 /// Adds up faces of a patch, then turns sums into means and shares.
@@ -52,6 +59,8 @@ class Summing {
     ++sum_.byReason[static_cast<int>(faces.reason[i])];
     sum_.thickness += area * faces.thickness[i];
     sum_.wantedFirst += area * faces.wantedFirst[i];
+    if (faces.growthInside[i] > 0) inside_.emplace_back(faces.growthInside[i], area);
+    if (faces.growthOutside[i] > 0) outside_.emplace_back(faces.growthOutside[i], area);
     if (faces.layers[i] >= wantedLayers) sum_.allLayers += area;
     if (faces.layers[i] < std::min<Id>(2, wantedLayers)) return;
     sum_.covered += area;
@@ -66,33 +75,35 @@ class Summing {
     for (double* value : {&mean.asWanted, &mean.meanFirst}) divide(*value, sum_.covered);
     for (double* value : {&mean.layers, &mean.allLayers, &mean.covered, &mean.wantedFirst, &mean.thickness})
       divide(*value, sum_.area);
+    mean.growthInside95 = quantile(inside_, kMost);
+    mean.growthOutside = quantile(outside_, 0.5);
+    mean.growthOutside95 = quantile(outside_, kMost);
     return mean;
   }
   Id faces() const { return sum_.faces; }
 
  private:
   PatchCoverage sum_;
+  std::vector<std::pair<double, double>> inside_, outside_;  // growth and area of each face
 };
 
-}  // namespace
-
-BoundaryRefineReport coverage(const PolyMesh& refined, const LayerColumns& columns,
-                              const LayerDemands& demands) {
+/// What became of the layers above each wall face.
+WallFaceLayers wallFaceLayers(const PolyMesh& mesh, const PolyMesh& refined, const LayerColumns& columns,
+                              const LayerDemands& demands, const std::vector<double>& areas) {
   const Id count = refined.boundaryFaces(), internal = refined.internalFaces();
-  const std::vector<double> volumes = layerVolumes(refined), ofColumn = columnVolumes(columns, volumes);
-  std::vector<double> areas(count, 0.0), wallArea(refined.cellCount, 0.0);
-  for (Id i = 0; i < count; ++i) {
-    areas[i] = measureFace(refined.points, refined.faces[internal + i], true).normal.norm();
+  const LayerCells cells = measureLayerCells(refined);
+  const std::vector<double> volumes = columnVolumes(refined, columns, cells);
+  const std::vector<double> heights = prismHeights(mesh, columns);
+  const LayerGrowth growth = layerGrowth(refined, columns, cells);
+  std::vector<double> wallArea(refined.cellCount, 0.0);
+  for (Id i = 0; i < count; ++i)
     if (refined.isWallPatch(refined.patch[i])) wallArea[refined.owner[internal + i]] += areas[i];
-  }
-  BoundaryRefineReport report;
-  report.facesByLayers.assign(demands.mostLayers(), 0);
-  WallFaceLayers& faces = report.faces;
+  WallFaceLayers faces;
   faces.layers.assign(count, 0);
   faces.reason.assign(count, LayerReason::None);
-  for (auto* heights : {&faces.firstHeight, &faces.wantedFirst, &faces.thickness}) heights->assign(count, 0);
-  std::vector<Summing> sums(refined.patchNames.begin(), refined.patchNames.end());
-  Summing all("all walls");
+  for (auto* values :
+       {&faces.firstHeight, &faces.wantedFirst, &faces.thickness, &faces.growthInside, &faces.growthOutside})
+    values->assign(count, 0);
   for (Id i = 0; i < count; ++i) {
     if (!refined.isWallPatch(refined.patch[i])) continue;
     const Id cell = refined.owner[internal + i], column = columns.columnOf(cell);
@@ -100,14 +111,37 @@ BoundaryRefineReport coverage(const PolyMesh& refined, const LayerColumns& colum
     const double area = wallArea[cell];
     faces.layers[i] = static_cast<std::uint8_t>(columns.layersOfCell(cell));
     faces.reason[i] = column == kNone ? LayerReason::NoPrism : columns.reason(column);
-    faces.firstHeight[i] = area > 0 ? volumes[cell] / area : 0;
-    faces.thickness[i] = area > 0 && column != kNone ? ofColumn[column] / area : faces.firstHeight[i];
-    faces.wantedFirst[i] = demand.first > 0
-                               ? demand.first
-                               : faces.thickness[i] / EdgeHeights{1, demand.expansion, 0}.sum(demand.layers);
+    faces.firstHeight[i] = area > 0 ? cells.volumes[cell] / area : 0;
+    faces.thickness[i] = area > 0 && column != kNone ? volumes[column] / area : faces.firstHeight[i];
+    const bool isPrism = column != kNone && columns.canSplit(column);
+    const double share = (isPrism ? heights[column] : faces.thickness[i]) /
+                         EdgeHeights{1, demand.expansion, 0}.sum(demand.layers);
+    faces.wantedFirst[i] = demand.first > 0 ? demand.first : share;
+    if (column == kNone) continue;
+    faces.growthInside[i] = growth.inside[column];
+    faces.growthOutside[i] = growth.outside[column];
+  }
+  return faces;
+}
+
+}  // namespace
+
+BoundaryRefineReport coverage(const PolyMesh& mesh, const PolyMesh& refined, const LayerColumns& columns,
+                              const LayerDemands& demands) {
+  std::vector<double> areas;
+  for (Id f = refined.internalFaces(); f < refined.faceCount(); ++f)
+    areas.push_back(measureFace(refined.points, refined.faces[f], true).normal.norm());
+  BoundaryRefineReport report;
+  report.facesByLayers.assign(demands.mostLayers(), 0);
+  report.faces = wallFaceLayers(mesh, refined, columns, demands, areas);
+  std::vector<Summing> sums(refined.patchNames.begin(), refined.patchNames.end());
+  Summing all("all walls");
+  for (Id i = 0; i < refined.boundaryFaces(); ++i) {
+    const Id patch = refined.patch[i];
+    if (!refined.isWallPatch(patch)) continue;
     ++report.wallFaces;
-    ++report.facesByLayers[faces.layers[i] - 1];
-    for (Summing* sum : {&sums[refined.patch[i]], &all}) sum->add(faces, i, demand.layers, areas[i]);
+    ++report.facesByLayers[report.faces.layers[i] - 1];
+    for (Summing* sum : {&sums[patch], &all}) sum->add(report.faces, i, demands.of(patch).layers, areas[i]);
   }
   for (const Summing& sum : sums)
     if (sum.faces() > 0) report.patches.push_back(sum.result());

@@ -9,13 +9,14 @@
 namespace pm {
 
 /// #B, beside the boundary faces of the refined mesh; 0 where a face is not on a wall. Heights are volumes
-/// over the area of the wall above them.
+/// over the area of the wall above them, growths as layerGrowth() has them.
 struct WallFaceLayers {
   std::vector<std::uint8_t> layers;
   std::vector<LayerReason> reason;  ///< why fewer than wanted
   std::vector<double> firstHeight;  ///< of the cell at the wall
-  std::vector<double> wantedFirst;  ///< first height asked for, or the share of it in the prism there
+  std::vector<double> wantedFirst;  ///< first height asked for, or its share of the prism's height there
   std::vector<double> thickness;    ///< of all layers
+  std::vector<double> growthInside, growthOutside;
 };
 
 /// Sums over a patch's faces. Shares are of its area.
@@ -31,6 +32,8 @@ struct PatchCoverage {
   double wantedFirst = 0;  ///< first height, on average
   double meanFirst = 0, minFirst = 0;  ///< of what is covered
   double thickness = 0;                ///< on average
+  double growthInside95 = 0;           ///< where there are several layers; 95% of that area has less
+  double growthOutside = 0, growthOutside95 = 0;  ///< median, and what 95% of the area has less of
   std::array<Id, kLayerReasons> byReason{};
 };
 
@@ -41,8 +44,8 @@ struct BoundaryRefineReport {
   std::vector<PatchCoverage> patches;  ///< walls with faces, and their sum where there are several
 };
 
-/// refined: what splitLayers() has made of the columns.
-BoundaryRefineReport coverage(const PolyMesh& refined, const LayerColumns& columns,
+/// mesh: that of the columns; refined: what splitLayers() has made of it.
+BoundaryRefineReport coverage(const PolyMesh& mesh, const PolyMesh& refined, const LayerColumns& columns,
                               const LayerDemands& demands);
 
 }  // namespace pm
