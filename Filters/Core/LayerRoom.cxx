@@ -26,7 +26,9 @@ class RoomMaker {
     movable.insert(movable.end(), below.begin(), below.end());
     NodeMover mover(mesh_, limits, movable, &monitor);
     const auto edges = mover.colour(ends), inner = mover.colour(below);
-    for (int round = 0; round < kRounds; ++round) {
+    // Edges that only lean are as upright as they get after one round; for length others must give way, too.
+    const bool anyShort = std::any_of(ends.begin(), ends.end(), [&](Id b) { return isShort(b); });
+    for (int round = 0; round < (anyShort ? kRounds : 1); ++round) {
       if (round > 0) mover.forEach(inner, [&](Id p) { mover.improve(p, evened(mover, p)); });
       mover.forEach(edges, [&](Id b) { stretch(mover, b); });
     }

@@ -159,9 +159,11 @@ double LayerSearch::tryPlaces(Id lower, LayerTrial& trial, double cost) {
       cost = now;
       best = mesh_.points[lower];
     }
-    moveTo(lower, old);
   }
-  moveTo(lower, best);
+  if (!moveTo(lower, best)) {
+    moveTo(lower, old);
+    moveTo(lower, best);
+  }
   if (mesh_.points[lower] != old) changed_[lower] = 1;
   return cost;
 }
