@@ -35,6 +35,8 @@ void packLayers(const BoundaryRefineReport& report, vtkPolyData* boundary) {
   addArray<vtkDoubleArray>(data, "FirstHeight", faces.firstHeight);
   addArray<vtkDoubleArray>(data, "FirstHeightWanted", faces.wantedFirst);
   addArray<vtkDoubleArray>(data, "LayerThickness", faces.thickness);
+  addArray<vtkDoubleArray>(data, "GrowthInside", faces.growthInside);
+  addArray<vtkDoubleArray>(data, "GrowthOutside", faces.growthOutside);
   std::vector<std::string> names;
   for (int i = 0; i < kLayerReasons; ++i) names.emplace_back(describe(static_cast<LayerReason>(i)));
   addStrings(boundary->GetFieldData(), "LayerReasonNames", names);
@@ -59,6 +61,9 @@ void packLayerTable(const BoundaryRefineReport& report, vtkTable* table) {
   addDoubles(report, rows, "FirstHeightWanted", &PatchCoverage::wantedFirst);
   addDoubles(report, rows, "FirstHeightMean", &PatchCoverage::meanFirst);
   addDoubles(report, rows, "FirstHeightLeast", &PatchCoverage::minFirst);
+  addDoubles(report, rows, "GrowthInside95", &PatchCoverage::growthInside95);
+  addDoubles(report, rows, "GrowthOutside", &PatchCoverage::growthOutside);
+  addDoubles(report, rows, "GrowthOutside95", &PatchCoverage::growthOutside95);
   addDoubles(report, rows, "Thickness", &PatchCoverage::thickness);
   for (int i = 1; i < kLayerReasons; ++i) {
     const auto counts = column<Id>(report.patches, [i](const PatchCoverage& p) { return p.byReason[i]; });

@@ -98,18 +98,20 @@ def layers(stage):
 
 
 def layer_table(table):
-    """One line a patch; and why faces have fewer layers than were wanted. Covered: a layer at the wall."""
+    """One line a patch; and why faces have fewer layers than were wanted. Covered: a layer at the wall. Growth: of
+    heights, what 95% of the area have less of inside the layers, and median and 95% from the last layer outwards."""
     columns = [table.GetColumn(i) for i in range(table.GetNumberOfColumns())]
     value = {c.GetName(): c for c in columns}
     first_reason = [c.GetName() for c in columns].index("Thickness") + 1
     lines = ["", "Layers by patch (shares of area; lengths)", 29 * " " + "   faces wanted  mean   all of covered | first height "
-             "wanted      mean     least  in 20% | thickness"]
+             "wanted      mean     least  in 20% | thickness | growth  last to cells behind, 95%"]
     for row in range(table.GetNumberOfRows()):
         number = {name: column.GetValue(row) for name, column in value.items()}
         lines.append(f"  {number['Patch'][:27]:27s} {number['Faces']:8,d} {number['LayersWanted']:6d} {number['Layers']:5.2f} "
                      f"{number['AllLayers']:7.1f}% {number['Covered']:6.1f}% | {number['FirstHeightWanted']:19.3g} "
                      f"{number['FirstHeightMean']:9.3g} {number['FirstHeightLeast']:9.3g} {number['AsWanted']:6.1f}% | "
-                     f"{number['Thickness']:9.3g}")
+                     f"{number['Thickness']:9.3g} | {number['GrowthInside95']:6.2f} {number['GrowthOutside']:21.2f} "
+                     f"{number['GrowthOutside95']:4.3g}")
     last = table.GetNumberOfRows() - 1
     reasons = [(c.GetName(), f"{c.GetValue(last):,} faces") for c in columns[first_reason:]] if last >= 0 else []
     return lines + (rows("Fewer layers, because", reasons) if reasons else [])

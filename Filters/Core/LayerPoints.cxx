@@ -51,6 +51,14 @@ bool LayerPoints::setCourse(Id lower, int course) {
   return true;
 }
 
+void LayerPoints::setLean(Id lower, const Vec3& lean) {
+  lean_[lower] = lean;
+  const int fixed = mesh_.fixed[lower] & mesh_.fixed[columns_.wallPoint(lower)];
+  for (int a = 0; a < 3; ++a)
+    if (fixed >> a & 1) lean_[lower][a] = 0;
+  follow(lower);
+}
+
 void LayerPoints::follow(Id lower) {
   all_[lower] = mesh_.points[lower];
   const Id inner = columns_.edgeLayers(lower) - 1;

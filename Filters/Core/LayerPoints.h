@@ -40,10 +40,7 @@ class LayerPoints {
   /// How far the edge leaves its course to a side, over its length: the direction in which it leaves the
   /// wall changes by this, and less and less towards its lower end.
   const Vec3& lean(Id lower) const { return lean_[lower]; }
-  void setLean(Id lower, const Vec3& lean) {
-    lean_[lower] = lean;
-    follow(lower);
-  }
+  void setLean(Id lower, const Vec3& lean);  ///< as far as it keeps to domain sides
   /// Puts the points of an edge anew after its lower point was moved.
   void follow(Id lower);
 
