@@ -204,6 +204,31 @@ TEST(BoundaryRefine, LimitsTakeLayersAway) {
   EXPECT_GT(some.facesByLayers[2], 0);  // flat parts keep theirs
 }
 
+TEST(BoundaryRefine, LayersLeanAwayFromWallsThatAreTooSkewForThem) {
+  // Rows of wall points pulled to one side and the other in turn: between thin layers that stand straight on
+  // such faces the angle is above 70 degrees, though in the whole prisms it is not.
+  VoxelOptions o;
+  o.size = {5, 5, 2};
+  o.wallSide = {false, false, false, false, false, true};
+  o.thickness = 0.45;
+  o.deform = [](const Vec3& p) {
+    const bool moves = p.z() > 2 && p.x() > 0 && p.x() < 5 && p.y() > 0 && p.y() < 5;
+    const double side = static_cast<int>(p.y()) % 2 == 0 ? 0.48 : -0.48;
+    return Vec3(p.x() + (moves ? side : 0), 0.32 * p.y(), p.z());
+  };
+  const PolyMesh mesh = layeredVoxels(o);
+  ASSERT_EQ(describeViolations(mesh, measure(mesh), thinLimits()), "");
+  BoundaryRefineOptions options;
+  options.layers = 5;
+  options.makeRoom = false;
+  BoundaryRefineReport report;
+  const PolyMesh refined = refine(mesh, options, &report);
+  EXPECT_EQ(checkTopology(refined), "");
+  EXPECT_NEAR(totalVolume(refined) / totalVolume(mesh), 1, 1e-12);
+  EXPECT_EQ(describeViolations(refined, measure(refined), thinLimits()), "");
+  EXPECT_EQ(report.facesByLayers[4], report.wallFaces);
+}
+
 TEST(BoundaryRefine, PolygonsWithMidEdgeNodes) {
   // A large column beside two small ones: its faces are pentagons.
   const std::vector<std::array<double, 2>> points{{0, 0}, {2, 0}, {2, 1}, {2, 2},

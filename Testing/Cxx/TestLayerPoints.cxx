@@ -116,4 +116,39 @@ TEST(LayerPoints, PinchedEdgesHaveNoPoints) {
   EXPECT_EQ(static_cast<Id>(atCourse(mesh, LayerPoints::kCourses - 1, 2).points.size()), straight - 4 * 2);
 }
 
+TEST(LayerPoints, LeansEndAtTheWallAndKeepToDomainSides) {
+  VoxelOptions o;
+  o.size = {3, 3, 2};
+  o.wallSide = {false, false, false, false, false, true};
+  const PolyMesh mesh = layeredVoxels(o);
+  LayerColumns columns(mesh);
+  const WallSight sight(mesh);
+  const std::vector<EdgeHeights> heights(mesh.points.size(), {0.1, 1, 0});
+  std::vector<Id> all;
+  for (Id c = 0; c < columns.count(); ++c) {
+    columns.want(c, 3);
+    all.push_back(c);
+  }
+  columns.updateEdges(all);
+  LayerPoints points(mesh, columns, sight, heights);
+  int leaning = 0;
+  for (Id b = 0; b < columns.pointCount(); ++b) {
+    if (columns.wallPoint(b) < 0) continue;
+    points.setLean(b, Vec3(0.3, 0.3, 0));
+    const Vec3& wall = mesh.points[columns.wallPoint(b)];
+    const bool onX = wall.x() == 0 || wall.x() == 3, onY = wall.y() == 0 || wall.y() == 3;
+    for (Id level = 1; level < 3; ++level) {
+      const Vec3 at = points.all()[columns.firstPoint(b) + level - 1] - wall;
+      const double part = 0.3 * level, aside = 0.3 * part * (1 - part) / 3;  // the edge is 1/3 long
+      EXPECT_NEAR(at.x(), onX ? 0 : aside, 1e-12);
+      EXPECT_NEAR(at.y(), onY ? 0 : aside, 1e-12);
+      EXPECT_NEAR(at.z(), -part / 3, 1e-12);
+      leaning += !onX && !onY;
+    }
+    points.setLean(b, Vec3::Zero());
+    EXPECT_NEAR((points.all()[columns.firstPoint(b)] - wall).norm(), 0.1, 1e-12);
+  }
+  EXPECT_EQ(leaning, 4 * 2);
+}
+
 }  // namespace

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import unittest
 
+import numpy
+
 from support import Messages, arrays, box, chain, pm, sphere
 
 
@@ -32,12 +34,20 @@ class TestBoundaryRefine(unittest.TestCase):
         self.assertGreater((abs(first / 0.004 - 1) < 0.2).mean(), 0.95)
         self.assertTrue((boundary["cell FirstHeightWanted"] == 0.004).all())
         self.assertTrue((boundary["cell LayerThickness"] >= boundary["cell FirstHeight"] * 0.999).all())
+        inside, outside = boundary["cell GrowthInside"], boundary["cell GrowthOutside"]
+        self.assertTrue((inside[several] > 1).all())
+        self.assertTrue((inside[layers == 1] == 0).all())
+        self.assertTrue((outside > 0).all())
         names = refine.GetOutputDataObject(1).GetFieldData().GetAbstractArray("LayerReasonNames")
         self.assertEqual(names.GetNumberOfValues(), 11)
         row = {table.GetColumnName(i): table.GetValue(0, i).ToString() for i in range(table.GetNumberOfColumns())}
         self.assertEqual(table.GetNumberOfRows(), 1)
         self.assertEqual(row["Patch"], "wall")
         self.assertEqual(int(row["Faces"]), refine.GetWallFaces())
+        self.assertLess(numpy.median(outside), float(row["GrowthOutside95"]))
+        self.assertGreater(numpy.quantile(outside, 0.9), float(row["GrowthOutside"]))
+        self.assertGreaterEqual(inside.max(), float(row["GrowthInside95"]))
+        self.assertGreater(float(row["GrowthInside95"]), 1.2)
         self.assertAlmostEqual(float(row["Area"]), 2 * (0.8 + 0.6 + 0.48), delta=0.02)
         for i, name in enumerate(names.GetValue(k) for k in range(1, 11)):
             self.assertEqual(int(row.get(name, 0)), (reasons == i + 1).sum(), name)
