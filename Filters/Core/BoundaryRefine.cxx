@@ -223,7 +223,7 @@ PolyMesh boundaryRefine(PolyMesh mesh, const BoundaryRefineOptions& options, Mon
   lowerUntilValid(mesh, columns, points, sight, options, monitor);
   monitor.check(0.7, "splitting prisms");
   PolyMesh refined = splitLayers(mesh, columns, points.all());
-  if (report) *report = coverage(mesh, refined, columns, demands);
+  if (report) *report = coverage(refined, columns, demands);
   monitor.check(1, "splitting prisms");
   return refined;
 }

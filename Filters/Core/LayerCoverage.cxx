@@ -13,27 +13,23 @@ namespace {
 constexpr double kWithin = 0.2;  // of the wanted first height
 constexpr double kMost = 0.95;   // of the area
 
-/// Volume of all layers of each column.
-std::vector<double> columnVolumes(const PolyMesh& refined, const LayerColumns& columns,
-                                  const LayerCells& cells) {
-  std::vector<double> sums(columns.count(), 0.0);
-  const std::vector<Id> ofCell = columnsOfCells(refined, columns);
-  for (Id cell = 0; cell < refined.cellCount; ++cell)
-    if (ofCell[cell] != kNone) sums[ofCell[cell]] += cells.volumes[cell];
-  return sums;
-}
+/// Heights of a column's first layer and of all its layers.
+struct ColumnHeights {
+  double first = 0, all = 0;
+};
 
-/// How high each column's prism is above its wall, on average over its edges; 0 where it is no prism.
-std::vector<double> prismHeights(const PolyMesh& mesh, const LayerColumns& columns) {
-  std::vector<double> heights(columns.count(), 0.0);
-  for (Id c = 0; c < columns.count(); ++c) {
-    if (!columns.canSplit(c)) continue;
-    Vec3 outward = Vec3::Zero(), inward = Vec3::Zero();
-    for (Id f : columns.roof(c)) outward += measureFace(mesh.points, mesh.faces[f], true).normal;
-    for (Id b : columns.ring(c)) inward += mesh.points[b] - mesh.points[columns.wallPoint(b)];
-    heights[c] = -outward.normalized().dot(inward) / static_cast<double>(columns.ring(c).size());
-  }
-  return heights;
+/// How far the inner end of a cell is above its wall, on average over the prism's edges.
+ColumnHeights columnHeights(const PolyMesh& refined, const LayerColumns& columns, Id column,
+                            const Vec3& outward) {
+  std::vector<Id> ends(columns.ring(column).begin(), columns.ring(column).end()), firstEnds = ends;
+  if (columns.layers(column) > 1) columns.capRow(column, 1, firstEnds);
+  const auto height = [&](const std::vector<Id>& row) {
+    double sum = 0;
+    for (std::size_t i = 0; i < row.size(); ++i)
+      sum += outward.dot(refined.points[columns.wallPoint(ends[i])] - refined.points[row[i]]);
+    return sum / static_cast<double>(row.size());
+  };
+  return {height(firstEnds), height(ends)};
 }
 
 /// The value that a share of the weight lies below. pairs: value and weight, in any order.
@@ -87,17 +83,15 @@ class Summing {
   std::vector<std::pair<double, double>> inside_, outside_;  // growth and area of each face
 };
 
-/// What became of the layers above each wall face.
-WallFaceLayers wallFaceLayers(const PolyMesh& mesh, const PolyMesh& refined, const LayerColumns& columns,
-                              const LayerDemands& demands, const std::vector<double>& areas) {
+/// What became of the layers above each wall face. areas: area vectors of the boundary faces.
+WallFaceLayers wallFaceLayers(const PolyMesh& refined, const LayerColumns& columns,
+                              const LayerDemands& demands, const std::vector<Vec3>& areas) {
   const Id count = refined.boundaryFaces(), internal = refined.internalFaces();
   const LayerCells cells = measureLayerCells(refined);
-  const std::vector<double> volumes = columnVolumes(refined, columns, cells);
-  const std::vector<double> heights = prismHeights(mesh, columns);
   const LayerGrowth growth = layerGrowth(refined, columns, cells);
-  std::vector<double> wallArea(refined.cellCount, 0.0);
+  std::vector<Vec3> walls(refined.cellCount, Vec3::Zero());
   for (Id i = 0; i < count; ++i)
-    if (refined.isWallPatch(refined.patch[i])) wallArea[refined.owner[internal + i]] += areas[i];
+    if (refined.isWallPatch(refined.patch[i])) walls[refined.owner[internal + i]] += areas[i];
   WallFaceLayers faces;
   faces.layers.assign(count, 0);
   faces.reason.assign(count, LayerReason::None);
@@ -108,15 +102,17 @@ WallFaceLayers wallFaceLayers(const PolyMesh& mesh, const PolyMesh& refined, con
     if (!refined.isWallPatch(refined.patch[i])) continue;
     const Id cell = refined.owner[internal + i], column = columns.columnOf(cell);
     const LayerDemand& demand = demands.of(refined.patch[i]);
-    const double area = wallArea[cell];
+    const double area = walls[cell].norm(), meanHeight = area > 0 ? cells.volumes[cell] / area : 0;
+    const bool isPrism = column != kNone && columns.canSplit(column);
+    const ColumnHeights heights = isPrism ? columnHeights(refined, columns, column, walls[cell].normalized())
+                                          : ColumnHeights{meanHeight, meanHeight};
     faces.layers[i] = static_cast<std::uint8_t>(columns.layersOfCell(cell));
     faces.reason[i] = column == kNone ? LayerReason::NoPrism : columns.reason(column);
-    faces.firstHeight[i] = area > 0 ? cells.volumes[cell] / area : 0;
-    faces.thickness[i] = area > 0 && column != kNone ? volumes[column] / area : faces.firstHeight[i];
-    const bool isPrism = column != kNone && columns.canSplit(column);
-    const double share = (isPrism ? heights[column] : faces.thickness[i]) /
-                         EdgeHeights{1, demand.expansion, 0}.sum(demand.layers);
-    faces.wantedFirst[i] = demand.first > 0 ? demand.first : share;
+    faces.firstHeight[i] = heights.first;
+    faces.thickness[i] = heights.all;
+    faces.wantedFirst[i] = demand.first > 0
+                               ? demand.first
+                               : heights.all / EdgeHeights{1, demand.expansion, 0}.sum(demand.layers);
     if (column == kNone) continue;
     faces.growthInside[i] = growth.inside[column];
     faces.growthOutside[i] = growth.outside[column];
@@ -126,14 +122,14 @@ WallFaceLayers wallFaceLayers(const PolyMesh& mesh, const PolyMesh& refined, con
 
 }  // namespace
 
-BoundaryRefineReport coverage(const PolyMesh& mesh, const PolyMesh& refined, const LayerColumns& columns,
+BoundaryRefineReport coverage(const PolyMesh& refined, const LayerColumns& columns,
                               const LayerDemands& demands) {
-  std::vector<double> areas;
+  std::vector<Vec3> areas;
   for (Id f = refined.internalFaces(); f < refined.faceCount(); ++f)
-    areas.push_back(measureFace(refined.points, refined.faces[f], true).normal.norm());
+    areas.push_back(measureFace(refined.points, refined.faces[f], true).normal);
   BoundaryRefineReport report;
   report.facesByLayers.assign(demands.mostLayers(), 0);
-  report.faces = wallFaceLayers(mesh, refined, columns, demands, areas);
+  report.faces = wallFaceLayers(refined, columns, demands, areas);
   std::vector<Summing> sums(refined.patchNames.begin(), refined.patchNames.end());
   Summing all("all walls");
   for (Id i = 0; i < refined.boundaryFaces(); ++i) {
@@ -141,7 +137,8 @@ BoundaryRefineReport coverage(const PolyMesh& mesh, const PolyMesh& refined, con
     if (!refined.isWallPatch(patch)) continue;
     ++report.wallFaces;
     ++report.facesByLayers[report.faces.layers[i] - 1];
-    for (Summing* sum : {&sums[patch], &all}) sum->add(report.faces, i, demands.of(patch).layers, areas[i]);
+    for (Summing* sum : {&sums[patch], &all})
+      sum->add(report.faces, i, demands.of(patch).layers, areas[i].norm());
   }
   for (const Summing& sum : sums)
     if (sum.faces() > 0) report.patches.push_back(sum.result());

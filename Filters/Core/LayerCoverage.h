@@ -8,8 +8,9 @@
 
 namespace pm {
 
-/// #B, beside the boundary faces of the refined mesh; 0 where a face is not on a wall. Heights are volumes
-/// over the area of the wall above them, growths as layerGrowth() has them.
+/// #B, beside the boundary faces of the refined mesh; 0 where a face is not on a wall. A height is how
+/// far a cell's inner end is above the wall, on average over the prism's edges (volume over area where the
+/// cell is no prism); growths are those of layerGrowth().
 struct WallFaceLayers {
   std::vector<std::uint8_t> layers;
   std::vector<LayerReason> reason;  ///< why fewer than wanted
@@ -44,8 +45,8 @@ struct BoundaryRefineReport {
   std::vector<PatchCoverage> patches;  ///< walls with faces, and their sum where there are several
 };
 
-/// mesh: that of the columns; refined: what splitLayers() has made of it.
-BoundaryRefineReport coverage(const PolyMesh& mesh, const PolyMesh& refined, const LayerColumns& columns,
+/// refined: what splitLayers() has made of the columns.
+BoundaryRefineReport coverage(const PolyMesh& refined, const LayerColumns& columns,
                               const LayerDemands& demands);
 
 }  // namespace pm

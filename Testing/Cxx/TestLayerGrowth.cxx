@@ -83,15 +83,16 @@ TEST(LayerGrowth, AFarModelHasTheSame) {
   EXPECT_NEAR(reportOf(mesh, {}).patches.at(0).growthOutside, near, 1e-6 * near);
 }
 
-TEST(LayerGrowth, TheWantedShareIsOfThePrismsHeightWhereWallsBend) {
-  // Around a cube prisms are wider at their lower end, by volume twice as high as they are above the wall.
+TEST(LayerGrowth, HeightsAreThoseAboveTheWallWhereItBends) {
+  // Around a cube prisms are wider at their lower end: volumes over the wall's area are no heights.
   const BoundaryRefineReport report = reportOf(layeredVoxels(cubeInBox()), {});
   int walls = 0;
   for (std::size_t i = 0; i < report.faces.layers.size(); ++i) {
     if (report.faces.layers[i] == 0) continue;
     ++walls;
     EXPECT_NEAR(report.faces.wantedFirst[i], 1 / 3.64 / 3, 1e-9);
-    EXPECT_GT(report.faces.thickness[i], 1.5 / 3);
+    EXPECT_NEAR(report.faces.firstHeight[i], 1 / 3.64 / 3, 1e-9);
+    EXPECT_NEAR(report.faces.thickness[i], 1.0 / 3, 1e-9);
   }
   EXPECT_EQ(walls, 6);
 }
