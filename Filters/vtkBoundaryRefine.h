@@ -69,8 +69,8 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkBoundaryRefine : public vtkValidMeshStag
   int GetNumberOfPatchLayers() const;
   ///@}
   ///@{
-  /** Whether layers of a given first height grow faster where the prism is higher than they need; else the
-   * last takes what is left. */
+  /** Whether prisms and the cells behind them are divided anew, so that heights grow evenly into the volume;
+   * else prisms stay as high as they are, and the last layer takes what is left. */
   vtkSetMacro(EvenGrowth, bool);
   vtkGetMacro(EvenGrowth, bool);
   vtkBooleanMacro(EvenGrowth, bool);

@@ -212,8 +212,10 @@ PolyMesh boundaryRefine(PolyMesh mesh, const BoundaryRefineOptions& options, Mon
   LayerColumns columns(mesh);
   const WallSight sight(mesh);
   if (splits && options.makeRoom) {
-    const std::vector<double> lengths =
-        wantedLengths(mesh, columns, demands, edgeHeights(mesh, columns, demands, LayerEnd::LastFills));
+    std::vector<double> behind;
+    if (options.end == LayerEnd::EvenGrowth) behind = sizesBehind(mesh, columns);
+    const std::vector<double> lengths = wantedLengths(
+        mesh, columns, demands, edgeHeights(mesh, columns, demands, LayerEnd::LastFills), behind);
     makeLayerRoom(mesh, columns, sight, lengths, options.limits, monitor);
   }
   const std::vector<EdgeHeights> heights = edgeHeights(mesh, columns, demands, options.end);

@@ -18,7 +18,7 @@ namespace pm {
 struct BoundaryRefineOptions : LayerSpec {  ///< the layers on all walls
   std::vector<PatchLayers> patches;         ///< and on walls of their own; the last that fits counts
   FlowData flow;                            ///< for y+
-  LayerEnd end = LayerEnd::LastFills;       ///< where the prism is higher than the layers need
+  LayerEnd end = LayerEnd::LastFills;       ///< how layers pass into the cells behind
   bool makeRoom = true;                     ///< may move lower ends of prism edges where layers need it
   QualityLimits limits;                     ///< minVolume is not applied: layers are thin on purpose
 };

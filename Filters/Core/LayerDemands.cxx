@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "LayerGrowth.h"
 #include "MeshQuality.h"
 
 namespace pm {
@@ -200,14 +201,38 @@ std::vector<EdgeHeights> edgeHeights(const PolyMesh& mesh, const LayerColumns& c
   return heights;
 }
 
+std::vector<double> sizesBehind(const PolyMesh& mesh, const LayerColumns& columns) {
+  const LayerCells cells = measureLayerCells(mesh);
+  std::vector<double> sizes(mesh.points.size(), 0.0);
+  for (Id f = 0; f < mesh.internalFaces(); ++f) {
+    const Id own = mesh.owner[f], next = mesh.neighbour[f];
+    const bool ownIsColumn = columns.columnOf(own) != kNone;
+    if (ownIsColumn == (columns.columnOf(next) != kNone)) continue;
+    const double size = std::cbrt(std::max(0.0, cells.volumes[ownIsColumn ? next : own]));
+    for (Id p : mesh.faces[f])
+      if (columns.wallPoint(p) >= 0) sizes[p] = sizes[p] > 0 ? std::min(sizes[p], size) : size;
+  }
+  return sizes;
+}
+
 std::vector<double> wantedLengths(const PolyMesh& mesh, const LayerColumns& columns,
-                                  const LayerDemands& demands, const std::vector<EdgeHeights>& heights) {
+                                  const LayerDemands& demands, const std::vector<EdgeHeights>& heights,
+                                  const std::vector<double>& behind) {
   std::vector<double> lengths(mesh.points.size(), 0.0);
   for (Id c = 0; c < columns.count(); ++c) {
     if (!columns.canSplit(c)) continue;
     const LayerDemand& demand = demands.ofColumn(mesh, columns, c);
-    if (demand.layers == 1 || demand.first == 0) continue;
-    for (Id b : columns.ring(c)) lengths[b] = std::max(lengths[b], heights[b].sum(demand.layers));
+    if (demand.layers == 1) continue;
+    for (Id b : columns.ring(c)) {
+      if (demand.first > 0) lengths[b] = std::max(lengths[b], heights[b].sum(demand.layers));
+      if (behind.empty() || !(behind[b] > 0)) continue;
+      const double both = alongEdge(mesh, columns, b).norm() + behind[b], first = heights[b].first;
+      const double ratio = demand.first > 0
+                               ? std::max(demand.expansion, expansionFor(both / first, demand.layers + 1))
+                               : demand.expansion;
+      const double even = both * unitSum(demand.layers, ratio) / unitSum(demand.layers + 1, ratio);
+      lengths[b] = std::max(lengths[b], even);
+    }
   }
   return lengths;
 }

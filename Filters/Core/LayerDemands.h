@@ -21,10 +21,11 @@ struct LayerSpec {
   double yPlus = 0;        ///< y+ of the first cell's centre, by FlowData; 0 = from the others
 };
 
-/// How layers whose first height is given end where the prism is higher than they need.
+/// How layers pass into the cells behind them.
 enum class LayerEnd : std::uint8_t {
-  LastFills,  ///< the last layer takes what is left
-  EvenGrowth  ///< they grow faster there, by one ratio, so that the last one is no step to the cells inside
+  LastFills,  ///< the last layer takes what is left of the prism
+  EvenGrowth  ///< layers of a given first height grow faster, by one ratio, where the prism is higher than
+              ///< they need; before that, prism and cell behind are divided anew, as far as points may move
 };
 
 /// Layers on patches of their own.
@@ -72,9 +73,15 @@ class LayerDemands {
 std::vector<EdgeHeights> edgeHeights(const PolyMesh& mesh, const LayerColumns& columns,
                                      const LayerDemands& demands, LayerEnd end);
 
+/// Sizes of the cells behind the prisms at each edge: cube roots of volumes, the smallest around it. #P by
+/// lower point, 0 where there is none.
+std::vector<double> sizesBehind(const PolyMesh& mesh, const LayerColumns& columns);
+
 /// Length that each edge needs for all layers of the columns around it, #P by lower point; 0 where the layers
-/// share what there is.
+/// share what there is. behind: from sizesBehind(), where the layers are to grow evenly into those cells;
+/// then prism and cell behind are divided anew, as layers and one layer more. Else empty.
 std::vector<double> wantedLengths(const PolyMesh& mesh, const LayerColumns& columns,
-                                  const LayerDemands& demands, const std::vector<EdgeHeights>& heights);
+                                  const LayerDemands& demands, const std::vector<EdgeHeights>& heights,
+                                  const std::vector<double>& behind);
 
 }  // namespace pm

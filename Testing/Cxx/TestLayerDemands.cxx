@@ -90,6 +90,7 @@ TEST(LayerDemands, EvenGrowthFillsThePrism) {
   options.layers = 4;
   options.firstHeight = 0.02;
   options.end = LayerEnd::EvenGrowth;
+  options.makeRoom = false;
   BoundaryRefineReport report;
   const PolyMesh refined = refine(twoPatchFloor(), options, report);
   EXPECT_EQ(report.facesByLayers, (std::vector<Id>{0, 0, 0, 32}));

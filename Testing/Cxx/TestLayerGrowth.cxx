@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "BoundaryRefine.h"
+#include "MeshQuality.h"
 #include "TestMeshes.h"
 
 namespace {
@@ -70,9 +71,30 @@ TEST(LayerGrowth, TheLastLayerThatFillsIsAStepInside) {
   EXPECT_NEAR(filled.patches.at(0).growthInside95, last / 0.024, 1e-9);
   EXPECT_NEAR(filled.patches.at(0).growthOutside, 1 / last, 1e-9);
   options.end = LayerEnd::EvenGrowth;
+  options.makeRoom = false;
   const BoundaryRefineReport even = reportOf(block(), options);
   const double ratio = even.patches.at(0).growthInside95;
   EXPECT_NEAR(0.02 * (1 + ratio + ratio * ratio), 1.0 / 3, 1e-9);
+}
+
+TEST(LayerGrowth, EvenGrowthDividesPrismAndCellBehindAnew) {
+  // A prism of 1/3 on a cell of 1: layers and that cell are to be as a row of four, each 1.2 times the last.
+  PolyMesh mesh = block();
+  BoundaryRefineOptions options;
+  options.end = LayerEnd::EvenGrowth;
+  Monitor monitor;
+  BoundaryRefineReport report;
+  const PolyMesh refined = boundaryRefine(mesh, options, monitor, &report);
+  EXPECT_EQ(checkTopology(refined), "");
+  EXPECT_EQ(report.facesByLayers[2], 12);
+  EXPECT_NEAR(report.patches.at(0).growthInside95, 1.2, 1e-9);
+  EXPECT_NEAR(report.patches.at(0).growthOutside95, 1.2, 0.02);
+  EXPECT_NEAR(report.patches.at(0).thickness, 4.0 / 3 * 3.64 / 5.368, 0.02);
+  const auto volume = [](const PolyMesh& m) { return summarise(m, measure(m), {}).totalVolume; };
+  EXPECT_NEAR(volume(refined), volume(mesh), 1e-12);
+  options.makeRoom = false;  // then nothing below may move
+  boundaryRefine(mesh, options, monitor, &report);
+  EXPECT_NEAR(report.patches.at(0).thickness, 1.0 / 3, 1e-12);
 }
 
 TEST(LayerGrowth, AFarModelHasTheSame) {
