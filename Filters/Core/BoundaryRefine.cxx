@@ -178,7 +178,9 @@ void lowerUntilValid(PolyMesh& mesh, LayerColumns& columns, LayerPoints& points,
   for (Id c : changed) planned.push_back({columns.layers(c), columns.reason(c)});
   const double all = static_cast<double>(changed.size()) + 1;
   std::vector<LayerCheck::Fault> faults = check.columnsToLower(changed);
-  LayerSearch search(mesh, columns, points, sight, check, options.limits, columnsOf(faults), monitor);
+  // Columns beside those with faults may get some when layers end there.
+  LayerSearch search(mesh, columns, points, sight, check, options.limits, touched(columns, columnsOf(faults)),
+                     monitor);
   search.moveLowerEnds(options.makeRoom);
   while (!faults.empty()) {
     for (int round = 0; round < kRounds; ++round) {

@@ -16,9 +16,9 @@ namespace pm {
 
 class LayerSearch {
  public:
-  /// faulty: the columns whose edges may move, now or in later calls. All arguments must outlive this.
+  /// mendable: the columns whose edges may move, now or in later calls. All arguments must outlive this.
   LayerSearch(PolyMesh& mesh, LayerColumns& columns, LayerPoints& points, const WallSight& sight,
-              LayerCheck& check, const QualityLimits& limits, const std::vector<Id>& faulty,
+              LayerCheck& check, const QualityLimits& limits, const std::vector<Id>& mendable,
               const Monitor& monitor);
 
   /// Whether lower ends of edges may move; they may at first.
