@@ -34,9 +34,12 @@ LayerLimits::LayerLimits(const QualityLimits& limits, double unit)
       cosWarpage_(std::cos(limits.maxWarpage * kDegree)),
       minTet_(limits.minTet * unit * unit * unit) {}
 
-LayerFault LayerLimits::ofFace(const std::vector<Vec3>& points, Span<Id> row, const FaceMeasures& face,
-                               const CellCentres& owner, const CellCentres* neighbour) const {
-  if (const LayerFault fault = ofCosine(face.cosWarpage, cosWarpage_, LayerReason::Warpage)) return fault;
+LayerFault LayerLimits::ofWarpage(const FaceMeasures& face) const {
+  return ofCosine(face.cosWarpage, cosWarpage_, LayerReason::Warpage);
+}
+
+LayerFault LayerLimits::ofCentres(const std::vector<Vec3>& points, Span<Id> row, const FaceMeasures& face,
+                                  const CellCentres& owner, const CellCentres* neighbour) const {
   if (neighbour == nullptr) {
     const double angle = cosine(face.normal, face.centre - owner.thesis);
     if (const LayerFault fault = ofCosine(angle, cosBoundary_, LayerReason::AngleBoundary)) return fault;
@@ -47,6 +50,12 @@ LayerFault LayerLimits::ofFace(const std::vector<Vec3>& points, Span<Id> row, co
   if (const LayerFault fault = ofCosine(angle, cosInternal_, LayerReason::AngleInternal)) return fault;
   return ofSkewness(internalSkewness(points, row, face, owner.foam, neighbour->foam),
                     limits_.maxSkewInternal);
+}
+
+LayerFault LayerLimits::ofFace(const std::vector<Vec3>& points, Span<Id> row, const FaceMeasures& face,
+                               const CellCentres& owner, const CellCentres* neighbour) const {
+  if (const LayerFault fault = ofWarpage(face)) return fault;
+  return ofCentres(points, row, face, owner, neighbour);
 }
 
 LayerFault LayerLimits::ofShape(const FaceMeasures& face, double minEta) const {

@@ -28,7 +28,11 @@ class LayerLimits {
   /// unit: the mesh's finestSize.
   LayerLimits(const QualityLimits& limits, double unit);
 
-  /// Warpage, angle and skewness of a face. neighbour: null on the boundary.
+  LayerFault ofWarpage(const FaceMeasures& face) const;
+  /// Angle and skewness of a face. neighbour: null on the boundary.
+  LayerFault ofCentres(const std::vector<Vec3>& points, Span<Id> row, const FaceMeasures& face,
+                       const CellCentres& owner, const CellCentres* neighbour) const;
+  /// All three.
   LayerFault ofFace(const std::vector<Vec3>& points, Span<Id> row, const FaceMeasures& face,
                     const CellCentres& owner, const CellCentres* neighbour) const;
   /// Degradation, which a face between two layers must keep.

@@ -103,11 +103,12 @@ void LayerTrial::listCells() {
   }
 }
 
-void LayerTrial::measureFaces() {
+void LayerTrial::measureFaces(bool onlyCentres) {
   faces_.resize(pieces_.size());
   for (std::size_t i = 0; i < pieces_.size(); ++i)
-    if (!measured_ || pieces_[i].moves) faces_[i] = measureFace(points_, rows_[static_cast<Id>(i)]);
-  measured_ = true;
+    if (!measured_ || pieces_[i].moves)
+      faces_[i] = measureFace(points_, rows_[static_cast<Id>(i)], onlyCentres);
+  measured_ = !onlyCentres;
 }
 
 LayerFault LayerTrial::measureCell(Id slot) {
@@ -119,7 +120,7 @@ LayerFault LayerTrial::measureCell(Id slot) {
 }
 
 LayerReason LayerTrial::measureCells() {
-  measureFaces();
+  measureFaces(true);
   LayerReason reason = LayerReason::None;
   for (Id cell = 0; cell < firstSlot_.back(); ++cell) {
     const LayerFault fault = measureCell(cell);
@@ -129,14 +130,17 @@ LayerReason LayerTrial::measureCells() {
 }
 
 double LayerTrial::cost(double enough) {
-  measureFaces();
+  measureFaces(false);
+  // What costs least to know comes first: it often is enough.
   double sum = 0;
+  for (std::size_t i = 0; i < pieces_.size() && sum < enough; ++i) {
+    sum += limits_.ofWarpage(faces_[i]).cost();
+    if (pieces_[i].isCap) sum += limits_.ofShape(faces_[i], limits_.values().minEtaInternal).cost();
+  }
   for (Id cell = 0; cell < firstSlot_.back() && sum < enough; ++cell) sum += measureCell(cell).cost();
   for (std::size_t i = 0; i < pieces_.size() && sum < enough; ++i) {
-    const Piece& piece = pieces_[i];
-    if (piece.isCap) sum += limits_.ofShape(faces_[i], limits_.values().minEtaInternal).cost();
-    sum += limits_.ofFace(points_, rows_[static_cast<Id>(i)], faces_[i], *piece.centres[0], piece.centres[1])
-               .cost();
+    const auto& [owner, neighbour] = pieces_[i].centres;
+    sum += limits_.ofCentres(points_, rows_[static_cast<Id>(i)], faces_[i], *owner, neighbour).cost();
   }
   return sum;
 }

@@ -55,7 +55,7 @@ class LayerTrial {
   void markMoving(Id lower);
   void listCells();
   Id slot(Id cell, Id layer) const;
-  void measureFaces();
+  void measureFaces(bool onlyCentres);
   LayerFault measureCell(Id slot);
 
   const PolyMesh& mesh_;
