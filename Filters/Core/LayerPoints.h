@@ -4,7 +4,7 @@
 // They need not lie on the straight line from the wall to the lower point: where that is not valid, the edge
 // takes another course. It may leave the wall in the direction that sees all wall faces and bend to its lower
 // end, its layers may be a fraction as high, or it may be pinched: its layers taper to nothing at the wall
-// point. Courses are numbered; 0 is the straight one.
+// point. Courses are numbered; 0 is the straight one. On any but the pinched an edge may lean to a side.
 #pragma once
 
 #include "LayerColumns.h"

@@ -2,10 +2,12 @@
 // Looks for a valid shape of layers where the plain one breaks a limit (thesis 4.8: other configurations are
 // searched before a split is given up).
 //
-// For a column with a fault, each of its prism edges may take another course (see LayerPoints), and its lower
-// end another place, within the limits of the mesh below. What leaves the fewest faults in the cells around
-// the edge is kept. Wall points do not move. Columns that touch nothing in common are searched in parallel;
-// the result is the same for any number of threads.
+// For a column with a fault, each of its prism edges may take another course or lean to a side (see
+// LayerPoints), and its lower end another place, within the limits of the mesh below. Shapes with layers as
+// high as wanted come first. What costs least in the cells around the edge is kept: fewest faults, and these
+// nearest to their limits, so that edges which must move one after the other get there (see LayerTrial).
+// Wall points do not move. Columns that touch nothing in common are searched in parallel; the result is the
+// same for any number of threads.
 #pragma once
 
 #include "LayerCheck.h"
@@ -31,6 +33,7 @@ class LayerSearch {
   static std::vector<Id> lowerEnds(const LayerColumns& columns, const std::vector<Id>& faulty);
   void mendColumn(Id column);
   void mendEdge(Id lower, LayerTrial& trial);
+  // Each takes the cost as it is and returns that of the best shape it has found and left behind.
   double tryCourses(Id lower, int first, int last, const std::vector<Id>& around, LayerTrial& trial,
                     double cost);
   double tryLeans(Id lower, LayerTrial& trial, double cost);
