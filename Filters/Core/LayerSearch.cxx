@@ -6,10 +6,11 @@
 namespace pm {
 namespace {
 
-constexpr int kSearches = 6;  // for one column
-constexpr double kLeans[] = {0.4, 0.2};
-constexpr double kThinGain = 0.5;
-constexpr double kGain = 0.001;  // that a change must bring; a face just at its limit costs 1
+constexpr int kSearches = 6;             // for one column
+constexpr double kLeans[] = {0.4, 0.2};  // to each side, over the edge's length
+// What a change must bring, where a face just beyond its limit costs 1; layers lower than wanted must mend
+// more.
+constexpr double kGain = 0.001, kThinGain = 0.5;
 
 void sortUnique(std::vector<Id>& ids) {
   std::sort(ids.begin(), ids.end());
@@ -34,21 +35,21 @@ std::vector<Vec3> places(const Vec3& wall, const Vec3& lower, const Vec3& best) 
 }  // namespace
 
 LayerSearch::LayerSearch(PolyMesh& mesh, LayerColumns& columns, LayerPoints& points, const WallSight& sight,
-                         LayerCheck& check, const QualityLimits& limits, const std::vector<Id>& faulty,
+                         LayerCheck& check, const QualityLimits& limits, const std::vector<Id>& mendable,
                          const Monitor& monitor)
     : mesh_(mesh),
       columns_(columns),
       points_(points),
       sight_(sight),
       check_(check),
-      mover_(mesh, limits, lowerEnds(columns, faulty), &monitor) {
+      mover_(mesh, limits, lowerEnds(columns, mendable), &monitor) {
   searches_.assign(columns.count(), 0);
   changed_.assign(mesh.points.size(), 0);
 }
 
-std::vector<Id> LayerSearch::lowerEnds(const LayerColumns& columns, const std::vector<Id>& faulty) {
+std::vector<Id> LayerSearch::lowerEnds(const LayerColumns& columns, const std::vector<Id>& mendable) {
   std::vector<Id> ends;
-  for (Id c : faulty) ends.insert(ends.end(), columns.ring(c).begin(), columns.ring(c).end());
+  for (Id c : mendable) ends.insert(ends.end(), columns.ring(c).begin(), columns.ring(c).end());
   sortUnique(ends);
   return ends;
 }

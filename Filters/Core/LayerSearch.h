@@ -25,12 +25,12 @@ class LayerSearch {
 
   /// Whether lower ends of edges may move; they may at first.
   void moveLowerEnds(bool may) { movesEnds_ = may; }
-  /// Searches around columns that have faults, each twice at most: more seldom ends better. Returns
+  /// Searches around columns that have faults, each a few times at most: more seldom ends better. Returns
   /// the columns around which something has changed, ascending.
   std::vector<Id> mend(const std::vector<Id>& faulty);
 
  private:
-  static std::vector<Id> lowerEnds(const LayerColumns& columns, const std::vector<Id>& faulty);
+  static std::vector<Id> lowerEnds(const LayerColumns& columns, const std::vector<Id>& mendable);
   void mendColumn(Id column);
   void mendEdge(Id lower, LayerTrial& trial);
   // Each takes the cost as it is and returns that of the best shape it has found and left behind.
