@@ -28,24 +28,29 @@ LayerCells measureLayerCells(const PolyMesh& mesh) {
     for (Id cell : {own, next})
       if (origin[cell] == kNone) origin[cell] = mesh.faces[f][0];
   }
-  std::vector<FaceMeasures> measures(faces.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, faces.size(), 1024), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i)
-      measures[i] = measureFace(mesh.points, mesh.faces[faces[i]], true);
-  });
   LayerCells cells;
   cells.volumes.assign(mesh.cellCount, 0.0);
   cells.centres.assign(mesh.cellCount, Vec3::Zero());
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    const auto [own, next] = cellsOf(faces[i]);
-    const auto add = [&](Id cell, double sign) {
-      const Vec3 at = measures[i].centre - mesh.points[origin[cell]];
-      const double pyramid = sign * measures[i].normal.dot(at) / 3;
-      cells.volumes[cell] += pyramid;
-      cells.centres[cell] += 0.75 * pyramid * at;
-    };
-    add(own, 1);
-    if (next != own) add(next, -1);
+  // Measured in parallel, added up in their order.
+  constexpr std::size_t kBlock = 1 << 15;
+  std::vector<FaceMeasures> measures(std::min(kBlock, faces.size()));
+  for (std::size_t first = 0; first < faces.size(); first += kBlock) {
+    const std::size_t count = std::min(kBlock, faces.size() - first);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 512), [&](const auto& range) {
+      for (std::size_t i = range.begin(); i != range.end(); ++i)
+        measures[i] = measureFace(mesh.points, mesh.faces[faces[first + i]], true);
+    });
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto [own, next] = cellsOf(faces[first + i]);
+      const auto add = [&](Id cell, double sign) {
+        const Vec3 at = measures[i].centre - mesh.points[origin[cell]];
+        const double pyramid = sign * measures[i].normal.dot(at) / 3;
+        cells.volumes[cell] += pyramid;
+        cells.centres[cell] += 0.75 * pyramid * at;
+      };
+      add(own, 1);
+      if (next != own) add(next, -1);
+    }
   }
   for (Id c = 0; c < mesh.cellCount; ++c) {
     if (!wanted[c] || !(cells.volumes[c] > 0)) continue;
