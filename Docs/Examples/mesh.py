@@ -68,7 +68,7 @@ def parser():
     p.add_argument("--first-height", type=float, metavar="H", help="height of the cell at the wall")
     p.add_argument("--expansion", type=float, metavar="R", help="height ratio of neighbouring layers (default: 1.2)")
     p.add_argument("--thickness", type=float, metavar="T", help="height of all layers; with --first-height, the ratio follows")
-    p.add_argument("--even-growth", action="store_true", help="let the ratio grow where prisms are higher than the layers")
+    p.add_argument("--even-growth", action="store_true", help="divide prisms and the cells behind them anew, so that heights grow evenly into the volume")
     p.add_argument("--y-plus", type=float, metavar="Y", help="y+ of the first cell's centre, for the flow given by --flow")
     p.add_argument("--flow", type=float, nargs=3, metavar=("SPEED", "LENGTH", "VISCOSITY"),
                    help="speed along the wall, length of the wall along it, kinematic viscosity")

@@ -48,6 +48,8 @@ class Projector {
     distance_.assign(wall_.size(), 0.0);
     tried_.assign(wall_.size(), 0);
     baseOffset_.assign(wall_.size(), Vec3::Zero());
+    witness_ = baseOffset_;
+    placeWitnesses();
     innerTried_.assign(mesh.points.size(), 0);
     freeTried_ = innerTried_;
     collectInner();
@@ -187,7 +189,7 @@ class Projector {
     }
     if (driftPart(p, row, x, part)) return;
     // The prism is in the way: take its foot along.
-    const Vec3 way = wayToGeometry(p, row, x);
+    const Vec3 way = wayToGeometry(row, x);
     const double distance = way.norm(), wanted = distance < kArrived * wall_.scale[row] ? 1 : part;
     const Id b = mesh_.base[p];
     if (mover_.moveTogether({p, b}, {x + wanted * way, mesh_.points[b] + 0.5 * wanted * way}))
@@ -196,22 +198,36 @@ class Projector {
       distance_[row] = (1 - 0.5 * wanted * mover_.drift(p, x + 0.5 * wanted * way, 2)) * distance;
   }
 
-  // To the closest point, if the lower end of the prism edge sees it. A front that has stayed beyond the
-  // geometry may have the back of another wall closest; its way is to where its prism edge meets the
-  // geometry first.
-  Vec3 wayToGeometry(Id p, Id row, const Vec3& from) const {
+  // To the closest point, if the octree cell behind the wall sees it: its centre lies in the domain. A front
+  // that reaches beyond the geometry may have the back of another wall closest; its way is to where the line
+  // from that centre meets the geometry first.
+  Vec3 wayToGeometry(Id row, const Vec3& from) const {
     const Vec3 closest = field_.closest(from).point, way = closest - from;
     if (way.norm() < kBeyond * wall_.scale[row]) return way;
-    const Vec3& base = mesh_.points[mesh_.base[p]];
+    const Vec3& witness = witness_[row];
     const SurfaceModel& model = field_.model();
-    const double met = model.firstCrossing(base, from);
-    if (met > 1 || !model.crosses(base, base + kThrough * (closest - base))) return way;
-    return base + met * (from - base) - from;
+    const double met = model.firstCrossing(witness, from);
+    if (met > 1 || !model.crosses(witness, witness + kThrough * (closest - witness))) return way;
+    return witness + met * (from - witness) - from;
+  }
+
+  /// The centre of the nearest octree cell behind each wall node.
+  void placeWitnesses() {
+    tbb::parallel_for(Id(0), wall_.size(), [&](Id row) {
+      const Id b = mesh_.base[wall_.nodes[row]];
+      double least = std::numeric_limits<double>::infinity();
+      for (Id c : mover_.cellsOf(b)) {
+        const double distance = (mover_.cellCentre(c) - mesh_.points[b]).squaredNorm();
+        if (mesh_.layer[c] != 0 || distance >= least) continue;
+        least = distance;
+        witness_[row] = mover_.cellCentre(c);
+      }
+    });
   }
 
   /// Moves p to where part of the way from `from` to the geometry leads; false when it may not.
   bool driftPart(Id p, Id row, const Vec3& from, double part) {
-    const Vec3 way = wayToGeometry(p, row, from);
+    const Vec3 way = wayToGeometry(row, from);
     const double distance = way.norm();
     const double wanted = distance < kArrived * wall_.scale[row] ? 1 : part;
     if (!moveWithBase(p, row, from + wanted * way)) return false;
@@ -282,6 +298,7 @@ class Projector {
   std::vector<double> distance_;            // of each wall node to the geometry, as its last drift left it
   double lastPart_ = 0;                     // of the way, in the last drift
   std::vector<Vec3> baseOffset_;            // #W ideal place of each base from its wall node
+  std::vector<Vec3> witness_;               // #W a place in the domain behind each node
   std::vector<Id> tried_;                   // #W tick of the last attempt
   std::vector<Id> innerTried_, freeTried_;  // #P
 };

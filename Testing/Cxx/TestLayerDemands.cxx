@@ -116,7 +116,9 @@ TEST(LayerDemands, PrismsAreMadeHigherForLayersThatNeedIt) {
   EXPECT_GT(report.patches.back().thickness, 0.54);
   EXPECT_NEAR(report.patches.back().meanFirst, 0.15, 1e-3);
   for (std::size_t p = 0; p < mesh.points.size(); ++p)
-    if (mesh.base[p] != kNone) EXPECT_EQ(refined.points[p], mesh.points[p]);
+    if (mesh.base[p] != kNone) {
+      EXPECT_EQ(refined.points[p], mesh.points[p]);
+    }
   options.makeRoom = false;
   refine(mesh, options, kept);
   EXPECT_EQ(kept.facesByLayers, (std::vector<Id>{0, 32, 0}));

@@ -63,7 +63,9 @@ PolyMesh atCourse(const PolyMesh& mesh, int course, Id onlyEvery) {
   LayerPoints points(mesh, columns, sight, heights);
   Id n = 0;
   for (Id b = 0; b < static_cast<Id>(mesh.points.size()); ++b)
-    if (columns.wallPoint(b) >= 0 && n++ % onlyEvery == 0) EXPECT_TRUE(points.setCourse(b, course));
+    if (columns.wallPoint(b) >= 0 && n++ % onlyEvery == 0) {
+      EXPECT_TRUE(points.setCourse(b, course));
+    }
   return splitLayers(mesh, columns, points.all());
 }
 
