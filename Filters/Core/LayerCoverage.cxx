@@ -104,8 +104,11 @@ WallFaceLayers wallFaceLayers(const PolyMesh& refined, const LayerColumns& colum
     const LayerDemand& demand = demands.of(refined.patch[i]);
     const double area = walls[cell].norm(), meanHeight = area > 0 ? cells.volumes[cell] / area : 0;
     const bool isPrism = column != kNone && columns.canSplit(column);
-    const ColumnHeights heights = isPrism ? columnHeights(refined, columns, column, walls[cell].normalized())
-                                          : ColumnHeights{meanHeight, meanHeight};
+    ColumnHeights heights{meanHeight, meanHeight};
+    if (isPrism) {
+      const ColumnHeights along = columnHeights(refined, columns, column, walls[cell].normalized());
+      if (along.first > 0) heights = along;  // the edges of a folded wall may run along it in the mean
+    }
     faces.layers[i] = static_cast<std::uint8_t>(columns.layersOfCell(cell));
     faces.reason[i] = column == kNone ? LayerReason::NoPrism : columns.reason(column);
     faces.firstHeight[i] = heights.first;
