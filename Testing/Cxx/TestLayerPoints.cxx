@@ -49,17 +49,21 @@ TEST(WallSight, KeepsToDomainSides) {
   EXPECT_EQ(onSide, 16);
 }
 
-/// All edges of a cube's layers at one course, split.
-PolyMesh atCourse(const PolyMesh& mesh, int course, Id onlyEvery) {
-  LayerColumns columns(mesh);
-  const WallSight sight(mesh);
-  std::vector<EdgeHeights> heights(mesh.points.size(), {0.05, 1.2, 0});
+void wantThree(LayerColumns& columns) {
   std::vector<Id> all;
   for (Id c = 0; c < columns.count(); ++c) {
     columns.want(c, 3);
     all.push_back(c);
   }
   columns.updateEdges(all);
+}
+
+/// All edges of a cube's layers at one course, split.
+PolyMesh atCourse(const PolyMesh& mesh, int course, Id onlyEvery) {
+  LayerColumns columns(mesh);
+  const WallSight sight(mesh);
+  std::vector<EdgeHeights> heights(mesh.points.size(), {0.05, 1.2, 0});
+  wantThree(columns);
   LayerPoints points(mesh, columns, sight, heights);
   Id n = 0;
   for (Id b = 0; b < static_cast<Id>(mesh.points.size()); ++b)
@@ -126,12 +130,7 @@ TEST(LayerPoints, LeansEndAtTheWallAndKeepToDomainSides) {
   LayerColumns columns(mesh);
   const WallSight sight(mesh);
   const std::vector<EdgeHeights> heights(mesh.points.size(), {0.1, 1, 0});
-  std::vector<Id> all;
-  for (Id c = 0; c < columns.count(); ++c) {
-    columns.want(c, 3);
-    all.push_back(c);
-  }
-  columns.updateEdges(all);
+  wantThree(columns);
   LayerPoints points(mesh, columns, sight, heights);
   int leaning = 0;
   for (Id b = 0; b < columns.pointCount(); ++b) {
