@@ -19,11 +19,6 @@ namespace {
 const char* const kChoosing = "choosing layers";
 constexpr int kRounds = 2;  // of search before layers are taken away
 
-void sortUnique(std::vector<Id>& ids) {
-  std::sort(ids.begin(), ids.end());
-  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-}
-
 void checkMesh(const PolyMesh& mesh) {
   if (mesh.stage < Stage::Layer || mesh.base.size() != mesh.points.size()) {
     throw InputError("The mesh has no prismatic layer to refine; apply DummyLayer and Project first.");

@@ -253,10 +253,7 @@ class CutChooser::Impl {
            wedgeShape(prism, corner) > 0;
   }
 
-  static void sortOut(std::vector<Id>& ids) {
-    std::sort(ids.begin(), ids.end());
-    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-  }
+  static void sortOut(std::vector<Id>& ids) { sortUnique(ids); }
 
   /// Cells choose; those that none of their apexes suits have the faces cut otherwise, once for each face.
   void improve(std::vector<Id> cells, Monitor& monitor) {

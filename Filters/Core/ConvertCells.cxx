@@ -49,8 +49,7 @@ std::vector<Vec3> foamCentres(const PolyMesh& mesh, Monitor& monitor) {
     thread_local std::vector<Id> points;
     points.clear();
     for (Id f : facesOf[c]) points.insert(points.end(), mesh.faces[f].begin(), mesh.faces[f].end());
-    std::sort(points.begin(), points.end());
-    points.erase(std::unique(points.begin(), points.end()), points.end());
+    sortUnique(points);
     const Span<Id> own{points.data(), points.data() + points.size()};
     Vec3 sum = Vec3::Zero();
     for (Id p : own) sum += mesh.points[p] - mesh.points[own[0]];
@@ -101,8 +100,7 @@ std::vector<Id> cellsAtSkewFaces(const PolyMesh& mesh, const FaceTable& table,
     add(mesh.owner[f]);
     if (f < mesh.internalFaces()) add(mesh.neighbour[f]);
   }
-  std::sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end()), found.end());
+  sortUnique(found);
   return found;
 }
 

@@ -19,11 +19,6 @@ void forEach(std::size_t count, const Body& body) {
   });
 }
 
-void sortUnique(std::vector<Id>& ids) {
-  std::sort(ids.begin(), ids.end());
-  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-}
-
 bool isSameCycle(Span<Id> row, const std::vector<Id>& other) {
   const auto start = std::find(other.begin(), other.end(), row[0]) - other.begin();
   const std::size_t n = other.size();

@@ -179,8 +179,7 @@ FeatureDemand::Demand FeatureDemand::asNeeded(const Box& leaf) const {
     addCorner(graph_.curves()[run.curve].endCorner);
     inside += run.inside;
   }
-  std::sort(corners.begin(), corners.end());
-  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  sortUnique(corners);
   const bool corner = !corners.empty() && cell.contains(graph_.corners()[corners[0]]);
   if (inside == 0 && !corner && !isNear(cell, runs)) return {};
 

@@ -48,8 +48,7 @@ std::vector<Id> FeatureSnapper::mendingPoints(Id row) const {
   for (Id f : mover_.facesOf(b))
     for (Id q : mesh_.faces[f])
       if (wall_.rowOf[q] == kNone && q != b) around.push_back(q);
-  std::sort(around.begin(), around.end());
-  around.erase(std::unique(around.begin(), around.end()), around.end());
+  sortUnique(around);
   points.insert(points.end(), around.begin(), around.end());
   return points;
 }

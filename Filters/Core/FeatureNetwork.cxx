@@ -59,8 +59,7 @@ void unifyLinks(Links& links) {
 }
 
 void splitLinks(const std::vector<Vec3>& points, Links& links, std::vector<std::pair<Id, Id>> splits) {
-  std::sort(splits.begin(), splits.end());
-  splits.erase(std::unique(splits.begin(), splits.end()), splits.end());
+  sortUnique(splits);
   Links out;
   out.reserve(links.size() + splits.size());
   auto next = splits.begin();

@@ -388,8 +388,7 @@ void PathFinder::traceCurve(CurveTracer& tracer, Id curve) {
   const double scale = curveScale(curve);
   std::vector<Id> zones;
   for (const NearNode& n : near_.curves[curve]) zones.push_back(zone_[n.row]);
-  std::sort(zones.begin(), zones.end());
-  zones.erase(std::unique(zones.begin(), zones.end()), zones.end());
+  sortUnique(zones);
   CurveState& state = result_.curves[curve];
   for (Id zone : zones) state = std::max(state, traceInZone(tracer, curve, zone, scale));
 }

@@ -96,8 +96,7 @@ void FeatureSnapper::workAround(std::vector<Id> rows) {
       for (Id p : mesh_.faces[f])
         if (wall_.rowOf[p] == kNone && !isBase_[p]) below.push_back(p);
   }
-  std::sort(below.begin(), below.end());
-  below.erase(std::unique(below.begin(), below.end()), below.end());
+  sortUnique(below);
   inner_ = mover_.colour(below);
 }
 

@@ -96,8 +96,7 @@ class FrontMesher {
         lattice(c, side / 2, span / 2, [&](Key key) { nodes.push_back(key); });
       }
     }
-    std::sort(nodes.begin(), nodes.end());
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    sortUnique(nodes);
     return nodes;
   }
 

@@ -281,8 +281,7 @@ void FrontRepair::markChanged(Id leaf) {
 std::vector<Id> FrontRepair::aroundChanged() const {
   std::vector<Id> leaves;
   for (Id leaf : changed_) forSurroundings(leaf, [&](Id other) { leaves.push_back(other); });
-  std::sort(leaves.begin(), leaves.end());
-  leaves.erase(std::unique(leaves.begin(), leaves.end()), leaves.end());
+  sortUnique(leaves);
   return leaves;
 }
 

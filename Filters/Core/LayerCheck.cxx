@@ -25,11 +25,6 @@ void forEach(std::size_t count, const Body& body) {
 
 Span<Id> span(const std::vector<Id>& row) { return {row.data(), row.data() + row.size()}; }
 
-void sortUnique(std::vector<Id>& ids) {
-  std::sort(ids.begin(), ids.end());
-  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-}
-
 }  // namespace
 
 const char* describe(LayerReason reason) {

@@ -137,8 +137,7 @@ void LayerColumns::findColumns() {
       });
     }
     if (lower.empty()) continue;
-    std::sort(lower.begin(), lower.end());
-    lower.erase(std::unique(lower.begin(), lower.end()), lower.end());
+    sortUnique(lower);
     columnOf_[c] = count();
     cells_.push_back(c);
     edges_.push(lower);
@@ -157,8 +156,7 @@ void LayerColumns::around(Id column, std::vector<Id>& out) const {
     const Span<Id> columns = edgeColumns_[b];
     out.insert(out.end(), columns.begin(), columns.end());
   }
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
+  sortUnique(out);
 }
 
 Id LayerColumns::mostAround(Id lower) const {

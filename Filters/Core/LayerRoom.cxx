@@ -61,8 +61,7 @@ class RoomMaker {
       for (Id f : faces[b])
         for (Id p : mesh_.faces[f])
           if (mesh_.base[p] == kNone && columns_.wallPoint(p) < 0) below.push_back(p);
-    std::sort(below.begin(), below.end());
-    below.erase(std::unique(below.begin(), below.end()), below.end());
+    sortUnique(below);
     return below;
   }
   Vec3 evened(const NodeMover& mover, Id p) const {

@@ -12,11 +12,6 @@ constexpr double kLeans[] = {0.4, 0.2};  // to each side, over the edge's length
 // more.
 constexpr double kGain = 0.001, kThinGain = 0.5;
 
-void sortUnique(std::vector<Id>& ids) {
-  std::sort(ids.begin(), ids.end());
-  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-}
-
 /// Places for the lower end of an edge: below the wall point where all of the wall is seen, nearer and
 /// farther on the edge, and to all sides.
 std::vector<Vec3> places(const Vec3& wall, const Vec3& lower, const Vec3& best) {

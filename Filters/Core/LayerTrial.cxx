@@ -97,8 +97,7 @@ void LayerTrial::listCells() {
   for (Id cell = 0; cell < cells; ++cell) {
     row_.clear();
     for (Id i : cellPieces_[cell]) row_.insert(row_.end(), rows_[i].begin(), rows_[i].end());
-    std::sort(row_.begin(), row_.end());
-    row_.erase(std::unique(row_.begin(), row_.end()), row_.end());
+    sortUnique(row_);
     cellPoints_.push(row_);
   }
 }

@@ -249,8 +249,7 @@ class RoomSearch {
     for (Id c : fresh)
       for (Id n : cells_.neighbour[c])
         if (n != kNone && partBefore(n) != kNone) shells.push_back({partBefore(n), c});
-    std::sort(shells.begin(), shells.end());
-    shells.erase(std::unique(shells.begin(), shells.end()), shells.end());
+    sortUnique(shells);
     return shells;
   }
   Id partBefore(Id cell) { return partOf_[before_.root(cell)]; }

@@ -94,8 +94,7 @@ Membrane triangulated(const Octree& tree, const std::vector<Face>& faces) {
         keys.insert(keys.end(), quad.begin(), quad.end());
       }
   }
-  std::sort(keys.begin(), keys.end());
-  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  sortUnique(keys);
   Membrane m;
   for (Key key : keys) m.points.push_back(tree.brick.position(decode(key)));
   const auto id = [&](Key key) {

@@ -156,8 +156,7 @@ void gatherPoints(const PolyMesh& mesh, Span<Id> facesOfCell, std::vector<Id>& o
   for (Id f : facesOfCell) {
     for (Id p : mesh.faces[f]) out.push_back(p);
   }
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
+  sortUnique(out);
 }
 
 /// |sum of area vectors| over the sum of their lengths; 1 when there is no area.

@@ -219,8 +219,7 @@ std::vector<Id> facesOutside(const MeshQualityReport& report) {
       if (!m.holds(m.values[i])) faces.push_back(m.first + static_cast<Id>(i));
     }
   }
-  std::sort(faces.begin(), faces.end());
-  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  sortUnique(faces);
   return faces;
 }
 

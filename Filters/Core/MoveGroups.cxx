@@ -50,8 +50,7 @@ void gatherCells(const PolyMesh& mesh, const MoverRegion& region, Span<Id> row, 
       const Span<Id> own = region.pointCells[region.pointSlot[point]];
       cells.insert(cells.end(), own.begin(), own.end());
     }
-  std::sort(cells.begin(), cells.end());
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  sortUnique(cells);
 }
 
 }  // namespace

@@ -107,7 +107,7 @@ NodeMover::Relation NodeMover::bestRelation() {
 
 bool NodeMover::holdsWith(Exchange& exchange) const {
   const Id old = exchange.gone.front(), c = mesh_.owner[old];
-  if (region_.cellSlot[c] == kNone || region_.isRim(c)) return false;
+  if (!region_.isInner(c)) return false;
   for (std::size_t i = 0; i < exchange.rows.size(); ++i) {
     exchange.shapes.push_back(shapeOf(old, exchange.row(i)));
     if (shapeRefuses(old, exchange.shapes[i], bestShape()) != Refusal::None) return false;

@@ -31,29 +31,6 @@ Id number(const Marks& marks, std::vector<Id>& slots, Id first = 0) {
   return first;
 }
 
-/// Rows of faces with new boundary faces, from pairs (slot, face) in ascending order of faces; the internal
-/// faces in them stay.
-template <class ForEachPair>
-Csr<Id> withBoundary(const Csr<Id>& rows, Id internalFaces, const ForEachPair& forEachPair) {
-  Csr<Id> renewed;
-  renewed.offsets.assign(rows.offsets.size(), 0);
-  forEachPair([&](Id slot, Id) { ++renewed.offsets[slot + 1]; });
-  const auto endOfInternal = [&](Id i) {
-    return std::lower_bound(rows[i].begin(), rows[i].end(), internalFaces);
-  };
-  for (Id i = 0; i < rows.rows(); ++i)
-    renewed.offsets[i + 1] += renewed.offsets[i] + static_cast<Id>(endOfInternal(i) - rows[i].begin());
-  renewed.values.resize(renewed.offsets.back());
-  std::vector<Id> next(rows.rows());
-  for (Id i = 0; i < rows.rows(); ++i) {
-    const auto first = renewed.values.begin();
-    next[i] =
-        static_cast<Id>(std::copy(rows[i].begin(), endOfInternal(i), first + renewed.offsets[i]) - first);
-  }
-  forEachPair([&](Id slot, Id face) { renewed.values[next[slot]++] = face; });
-  return renewed;
-}
-
 /// Rows of `count` slots from pairs (slot, value) that forEachPair(body) passes to body in the order wanted.
 template <class ForEachPair>
 Csr<Id> collectRows(Id count, const ForEachPair& forEachPair) {
@@ -65,6 +42,18 @@ Csr<Id> collectRows(Id count, const ForEachPair& forEachPair) {
   std::vector<Id> next(rows.offsets.begin(), rows.offsets.end() - 1);
   forEachPair([&](Id slot, Id value) { rows.values[next[slot]++] = value; });
   return rows;
+}
+
+/// Rows of faces with other boundary faces, from pairs (slot, face) in ascending order of faces; the internal
+/// faces in them stay.
+template <class ForEachPair>
+Csr<Id> withBoundary(const Csr<Id>& rows, Id internalFaces, const ForEachPair& forEachPair) {
+  return collectRows(rows.rows(), [&](const auto& body) {
+    for (Id i = 0; i < rows.rows(); ++i)
+      for (Id f : rows[i])
+        if (f < internalFaces) body(i, f);
+    forEachPair(body);
+  });
 }
 
 }  // namespace
@@ -91,8 +80,7 @@ Csr<Id> pointsOfRows(const PolyMesh& mesh, const Csr<Id>& faceRows) {
       for (Id i = range.begin(); i < range.end(); ++i) {
         own.clear();
         for (Id f : faceRows[i]) own.insert(own.end(), mesh.faces[f].begin(), mesh.faces[f].end());
-        std::sort(own.begin(), own.end());
-        own.erase(std::unique(own.begin(), own.end()), own.end());
+        sortUnique(own);
         body(i, own);
       }
     });
@@ -148,7 +136,6 @@ void MoverRegion::renewBoundary(const PolyMesh& mesh) {
   const auto lastSlot =
       std::find_if(faceSlot.rend() - internal, faceSlot.rend(), [](Id s) { return s != kNone; });
   faces = lastSlot == faceSlot.rend() ? 0 : *lastSlot + 1;
-  const auto isInner = [&](Id cell) { return cellSlot[cell] != kNone && !isRim(cell); };
   for (Id f = internal; f < mesh.faceCount(); ++f)
     if (isInner(mesh.owner[f])) faceSlot[f] = faces++;
   cellFaces = withBoundary(cellFaces, internal, [&](const auto& body) {

@@ -24,6 +24,7 @@ struct MoverRegion {
   Csr<Id> pointCells, pointFaces;  // #points
   Csr<Id> cellFaces, cellPoints;   // #cells
   bool isRim(Id cell) const { return cellSlot[cell] >= cells; }
+  bool isInner(Id cell) const { return cellSlot[cell] != kNone && !isRim(cell); }  ///< of a movable point
 };
 
 /// The faces of the cells with slots in [first, last).

@@ -303,8 +303,7 @@ class NarrowSearch {
       forGapsAround(gaps_[g].leaf, [&](Id other) {
         if (gaps_[other].wave == kNone) candidates.push_back(other);
       });
-    std::sort(candidates.begin(), candidates.end());
-    candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
+    sortUnique(candidates);
     return candidates;
   }
 

@@ -154,8 +154,7 @@ void RefinementCriteria::fillIslands(Level& level) {
         ++finer[place];
         next.push_back(place);
       });
-    std::sort(next.begin(), next.end());
-    next.erase(std::unique(next.begin(), next.end()), next.end());
+    sortUnique(next);
     asking.clear();
     std::copy_if(next.begin(), next.end(), std::back_inserter(asking), asks);
   }

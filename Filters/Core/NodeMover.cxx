@@ -14,12 +14,6 @@ namespace {
 
 constexpr double kDegree = 3.14159265358979323846 / 180;
 
-template <class T>
-void sortUnique(std::vector<T>& v) {
-  std::sort(v.begin(), v.end());
-  v.erase(std::unique(v.begin(), v.end()), v.end());
-}
-
 /// In single precision, but on the side of the limit where it is: what keeps a limit never seems to break it,
 /// nor the other way round. For a value with a lower limit.
 float rounded(double value, double limit) {
@@ -95,8 +89,7 @@ NodeMover::NodeMover(PolyMesh& mesh, const QualityLimits& limits, MoverRegion re
   };
   forEachFace([&](Id f, Shape& s) { s = shapeNow(f); });
   tbb::parallel_for(Id(0), mesh_.cellCount, [&](Id c) {
-    const Id slot = region_.cellSlot[c];
-    if (slot != kNone && slot < region_.cells) cells_[slot] = cellNow(c);
+    if (region_.isInner(c)) cell(c) = cellNow(c);
   });
   measureRim();
   forEachFace([&](Id f, Relation& s) { s = relationNow(f); });
@@ -112,10 +105,10 @@ void NodeMover::wallFacesChanged(const std::vector<Id>& cells) {
   };
   forEachBoundaryFace([&](Id f, Shape& s) { s = shapeNow(f); });
   for (Id c : cells)
-    if (region_.cellSlot[c] != kNone && !region_.isRim(c)) cell(c) = cellNow(c);
+    if (region_.isInner(c)) cell(c) = cellNow(c);
   forEachBoundaryFace([&](Id f, Relation& s) { s = relationNow(f); });
   for (Id c : cells)
-    if (region_.cellSlot[c] != kNone && !region_.isRim(c))
+    if (region_.isInner(c))
       for (Id f : facesOfCell(c))
         if (isInternal(f)) static_cast<Relation&>(face(f)) = relationNow(f);
 }

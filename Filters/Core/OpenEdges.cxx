@@ -127,8 +127,7 @@ class Welder {
   static std::vector<Id> pointsOf(const Links& links) {
     std::vector<Id> ids;
     for (const auto& link : links) ids.insert(ids.end(), {link.a, link.b});
-    std::sort(ids.begin(), ids.end());
-    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+    sortUnique(ids);
     return ids;
   }
 

@@ -125,8 +125,7 @@ class Cutter {
       cutFaces_.points.insert(cutFaces_.points.end(), row.begin(), row.end());
     }
     std::vector<Id>& points = cutFaces_.points;
-    std::sort(points.begin(), points.end());
-    points.erase(std::unique(points.begin(), points.end()), points.end());
+    sortUnique(points);
     if (points.empty()) refuseNoCut();
     std::vector<char> at(mesh_.points.size(), 0);
     for (Id p : points) at[p] = 1;
@@ -179,8 +178,7 @@ class Cutter {
     }
     std::vector<Node>& nodes = section.nodes;
     for (const Found& side : found) nodes.insert(nodes.end(), {side.from, side.to});
-    std::sort(nodes.begin(), nodes.end());
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    sortUnique(nodes);
     const auto idOf = [&](const Node& n) {
       return static_cast<Id>(std::lower_bound(nodes.begin(), nodes.end(), n) - nodes.begin());
     };

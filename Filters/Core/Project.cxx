@@ -260,8 +260,7 @@ class Projector {
     for (Id row : stuck)
       for (Id c : mover_.cellsOf(wall_.nodes[row]))
         around.insert(around.end(), mover_.pointsOf(c).begin(), mover_.pointsOf(c).end());
-    std::sort(around.begin(), around.end());
-    around.erase(std::unique(around.begin(), around.end()), around.end());
+    sortUnique(around);
     const auto atEase = [&](Id p) { return mover_.badness(p) < kAtLimit; };
     around.erase(std::remove_if(around.begin(), around.end(), atEase), around.end());
     mover_.forEach(mover_.blocks(around), [&](Id p) {

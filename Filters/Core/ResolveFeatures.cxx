@@ -4,7 +4,6 @@
 #include <tbb/parallel_for.h>
 
 #include <cmath>
-#include <optional>
 
 #include "FeatureCoverage.h"
 #include "FeaturePaths.h"
@@ -17,6 +16,14 @@
 namespace pm {
 namespace {
 
+/// Lengths of the prism edges below the wall's nodes, 0 where there is none. #W
+std::vector<double> prismHeights(const PolyMesh& mesh, const WallSurface& wall) {
+  std::vector<double> heights;
+  for (Id p : wall.nodes)
+    heights.push_back(mesh.base[p] == kNone ? 0.0 : (mesh.points[p] - mesh.points[mesh.base[p]]).norm());
+  return heights;
+}
+
 /// The stage's state. What knows the wall's faces is brought up to date when faces are cut.
 class Resolver {
  public:
@@ -28,11 +35,9 @@ class Resolver {
         options_(options),
         monitor_(monitor),
         wall_(wallSurface(mesh)),
-        mover_(mesh, options.limits, pointsNearWall(mesh, 1), &monitor) {
-    snapper_.emplace(mover_, wall_, field_, graph_, height_);
-    for (Id p : wall_.nodes)
-      height_.push_back(mesh.base[p] == kNone ? 0.0 : (mesh.points[p] - mesh.points[mesh.base[p]]).norm());
-  }
+        height_(prismHeights(mesh, wall_)),
+        mover_(mesh, options.limits, pointsNearWall(mesh, 1), &monitor),
+        snapper_(mover_, wall_, field, graph, height_) {}
 
   /// Traces and snaps; nodes that miss make room for others in the next round.
   void snap() {
@@ -40,21 +45,21 @@ class Resolver {
     for (int round = 0; round < options_.rounds; ++round) {
       monitor_.check(0.05 + 0.75 * round / options_.rounds, "feature snapping");
       setTargets(history);
-      snapper_->snap(false);
-      snapper_->snap(true);
-      snapper_->workAround(snapper_->missed());
-      snapper_->relax();
-      snapper_->force();
-      if (snapper_->missed().empty()) break;
-      snapper_->report(history);
-      if (round + 1 < options_.rounds) cut(snapper_->helpfulCuts());
+      snapper_.snap(false);
+      snapper_.snap(true);
+      snapper_.workAround(snapper_.missed());
+      snapper_.relax();
+      snapper_.force();
+      if (snapper_.missed().empty()) break;
+      snapper_.report(history);
+      if (round + 1 < options_.rounds) cut(snapper_.helpfulCuts());
     }
-    for (bool corners : {false, true}) snapper_->snap(corners);  // where the last round has made room
-    snapper_->workAroundAll();
-    missed_ = snapper_->releaseMissed();
-    snapper_->relax();
+    for (bool corners : {false, true}) snapper_.snap(corners);  // where the last round has made room
+    snapper_.workAroundAll();
+    missed_ = snapper_.releaseMissed();
+    snapper_.relax();
     monitor_.check(0.8, "polishing");
-    snapper_->polish();
+    snapper_.polish();
   }
 
   /// Brings faces nearer to the geometry: by cuts, then by moves of their nodes. Cuts that brought nothing
@@ -84,7 +89,7 @@ class Resolver {
     if (cuts.empty()) return;
     std::vector<Id> cells;
     for (const WallCut& c : cuts) {
-      snapper_->noteChange(mesh_.faces[c.face]);
+      snapper_.noteChange(mesh_.faces[c.face]);
       cells.push_back(mesh_.owner[c.face]);
     }
     const std::vector<WallCut> made = cutWallFaces(mesh_, cuts);
@@ -107,7 +112,7 @@ class Resolver {
     options.canCut = [&](const WallCut& c) { return mover_.cutHolds(c); };
     const FeaturePaths paths = traceFeatures(mesh_, wall_, graph_, options, history);
     cut(paths.cuts);
-    snapper_->setTargets(paths);
+    snapper_.setTargets(paths);
   }
   std::vector<FitRole> fitRoles() const;
   bool isOnFeature(Id a, Id b) const;
@@ -118,10 +123,10 @@ class Resolver {
   const FeatureGraph& graph_;
   const ResolveFeaturesOptions& options_;
   Monitor& monitor_;
-  std::vector<double> height_;  // #W prism edges at the start
   WallSurface wall_;
+  const std::vector<double> height_;  // #W prism edges at the start
   NodeMover mover_;
-  std::optional<FeatureSnapper> snapper_;
+  FeatureSnapper snapper_;
   std::vector<MissedTarget> missed_;
 };
 

@@ -70,8 +70,7 @@ Edge edgeOf(const WallCut& cut) { return std::minmax(cut.a, cut.b); }
 void dropKnownEdges(const PolyMesh& mesh, std::vector<WallCut>& cuts) {
   std::vector<Edge> known;
   for (const WallCut& cut : cuts) known.push_back(edgeOf(cut));
-  std::sort(known.begin(), known.end());
-  known.erase(std::unique(known.begin(), known.end()), known.end());
+  sortUnique(known);
   std::vector<char> isEdge(known.size(), 0);
   const auto place = [&](const Edge& edge) {
     const auto it = std::lower_bound(known.begin(), known.end(), edge);
