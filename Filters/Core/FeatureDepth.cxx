@@ -126,6 +126,17 @@ FeatureDemand::Answer FeatureDemand::fullDepth(const Box& cell) const {
   return near ? Answer::Near : Answer::None;
 }
 
+std::vector<Id> FeatureDemand::curvesNear(const Box& cell) const {
+  const Box reach = grown(cell, std::max(cell.size().maxCoeff(), options_.featureBuffer * finest_));
+  std::vector<Id> curves;
+  for (Id s : graph_.segmentsNear(reach)) {
+    const FeatureSegment& segment = graph_.segments()[s];
+    if (!curves.empty() && curves.back() == segment.curve) continue;
+    if (counts(segment) && touches(reach, segment.a, segment.b)) curves.push_back(segment.curve);
+  }
+  return curves;
+}
+
 /// Consecutive segments of one curve, in its order; a closed curve's run may go on over its end.
 struct FeatureDemand::Run {
   Id curve = kNone;

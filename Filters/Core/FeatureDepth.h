@@ -7,7 +7,8 @@
 // the cell by more than kMostSag of the finest cell, or one beside which the surfaces bend so much that the
 // sharp edge is none any more at the size of the cell, or one whose sides face each other by closeAngle. What
 // is left are cells with one straight piece of a curve, or one corner and the curves from it. Cells within
-// featureBuffer finest cells of a feature that asks follow it, as at full depth.
+// featureBuffer finest cells of a feature that asks follow it, as at full depth; and so do the other cells
+// along the same curve (RefinementCriteria::evenCurves).
 #pragma once
 
 #include <vector>
@@ -39,6 +40,8 @@ class FeatureDemand {
   };
   /// Thread-safe.
   Demand at(const Box& cell) const;
+  /// Curves of critical edges that run through a cell or a cell beside it, ascending. Thread-safe.
+  std::vector<Id> curvesNear(const Box& cell) const;
 
   const FeatureGraph& graph() const { return graph_; }
 

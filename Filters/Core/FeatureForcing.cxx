@@ -118,8 +118,9 @@ void FeatureSnapper::mendInner(Id point, const Vec3& ideal, double scale) {
 void FeatureSnapper::mendWallNode(Id row) {
   const Id p = wall_.nodes[row];
   double bad = mover_.badness(p);
+  if (bad <= 1 || role_[row] == Role::Corner) return;
   const Vec3 n = wallNormal(row);
-  if (bad <= 1 || role_[row] == Role::Corner || !(n.norm() > 0)) return;
+  if (!(n.norm() > 0)) return;
   const Vec3 u = n.unitOrthogonal(), v = n.cross(u);
   const bool onCurve = role_[row] == Role::Curve && reached(row);
   for (double step : kMendSteps)

@@ -18,6 +18,13 @@ constexpr double kFine = 0.9;  // badness below which cells are well enough not 
 
 }  // namespace
 
+std::vector<double> prismHeights(const PolyMesh& mesh, const WallSurface& wall) {
+  std::vector<double> heights;
+  for (Id p : wall.nodes)
+    heights.push_back(mesh.base[p] == kNone ? 0.0 : (mesh.points[p] - mesh.points[mesh.base[p]]).norm());
+  return heights;
+}
+
 FeatureSnapper::FeatureSnapper(NodeMover& mover, const WallSurface& wall, const DistanceField& field,
                                const FeatureGraph& graph, const std::vector<double>& height)
     : mover_(mover), mesh_(mover.mesh()), wall_(wall), field_(field), graph_(graph), height_(height) {

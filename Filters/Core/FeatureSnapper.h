@@ -20,6 +20,9 @@ struct MissedTarget {
   Refusal limit;          ///< Other: a face would leave the geometry
 };
 
+/// Lengths of the prism edges below the wall's nodes, 0 where there is none. #W
+std::vector<double> prismHeights(const PolyMesh& mesh, const WallSurface& wall);
+
 class FeatureSnapper {
  public:
   FeatureSnapper(NodeMover& mover, const WallSurface& wall, const DistanceField& field,

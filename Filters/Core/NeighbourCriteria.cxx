@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The criteria that compare adjacent cells (RefinementCriteria.h): 2, 4 and the filling of islands.
+// The criteria that compare cells with others (RefinementCriteria.h): 2 and 4 with their neighbours, the
+// filling of islands, and the evening out along critical edges.
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdlib>
 #include <iterator>
@@ -11,6 +13,22 @@
 
 namespace pm {
 namespace {
+
+/// Asks the surface itself, or does the user give a size for a part of it?
+bool isOfTheSurface(RefineReason reason) {
+  switch (reason) {
+    case RefineReason::CellNormals:
+    case RefineReason::Normals:
+    case RefineReason::CellFacing:
+    case RefineReason::Facing:
+    case RefineReason::Feature:
+    case RefineReason::FeatureBuffer:
+    case RefineReason::Island:
+      return true;
+    default:
+      return false;
+  }
+}
 
 /// Calls body(node) for each cut cell around n, until it says stop.
 template <class Body>
@@ -158,6 +176,27 @@ void RefinementCriteria::fillIslands(Level& level) {
     asking.clear();
     std::copy_if(next.begin(), next.end(), std::back_inserter(asking), asks);
   }
+}
+
+// As needed, the cells along a critical edge and beside it are all as small as those where the surface asks
+// for the smallest. Where they change their size the front has a trench across the edge, as deep as the
+// larger ones, and the wall there often finds no nodes for the edge.
+void RefinementCriteria::evenCurves(Level& level) const {
+  if (level.sides.empty() || features_.graph().curves().empty()) return;
+  std::vector<std::atomic<bool>> asks(features_.graph().curves().size());
+  const auto forCurves = [&](const auto& counts, const auto& body) {
+    tbb::parallel_for(std::size_t(0), level.batch.size(), [&](std::size_t i) {
+      if (level.row[i] == kNone || !counts(level.cause[i].reason)) return;
+      for (Id c : features_.curvesNear(level.builder.box(level.builder.node(level.batch[i])))) body(i, c);
+    });
+  };
+  forCurves(isOfTheSurface, [&](std::size_t, Id c) { asks[c].store(true, std::memory_order_relaxed); });
+  forCurves([](RefineReason reason) { return reason == RefineReason::Root; },
+            [&](std::size_t i, Id c) {
+              if (!asks[c].load(std::memory_order_relaxed)) return;
+              const Node& n = level.builder.node(level.batch[i]);
+              level.cause[i] = {RefineReason::FeatureBuffer, 0, narrowPatch(patchIn(level.builder, n))};
+            });
 }
 
 }  // namespace pm

@@ -240,6 +240,7 @@ RefinementCriteria::Choice RefinementCriteria::select(const OctreeBuilder& build
   probe(level);
   compareNeighbours(level);
   fillIslands(level);
+  evenCurves(level);
   Choice choice;
   for (std::size_t i = 0; i < batch.size(); ++i)
     if (level.cause[i].reason != RefineReason::Root) {

@@ -75,6 +75,7 @@ class RefinementCriteria {
   void compareNeighbours(Level& level) const;
   void probe(Level& level) const;
   static void fillIslands(Level& level);
+  void evenCurves(Level& level) const;
   Id patchIn(const OctreeBuilder& builder, const Node& n) const {
     return model_.patchOf(builder.triangles(n)[0]);
   }

@@ -4,7 +4,9 @@
 #include <tbb/parallel_for.h>
 
 #include <cmath>
+#include <optional>
 
+#include "FeatureBridges.h"
 #include "FeatureCoverage.h"
 #include "FeaturePaths.h"
 #include "FeatureSnapper.h"
@@ -16,13 +18,7 @@
 namespace pm {
 namespace {
 
-/// Lengths of the prism edges below the wall's nodes, 0 where there is none. #W
-std::vector<double> prismHeights(const PolyMesh& mesh, const WallSurface& wall) {
-  std::vector<double> heights;
-  for (Id p : wall.nodes)
-    heights.push_back(mesh.base[p] == kNone ? 0.0 : (mesh.points[p] - mesh.points[mesh.base[p]]).norm());
-  return heights;
-}
+constexpr int kBridgeRounds = 2;  // bridges beside each other are built one after the other
 
 /// The stage's state. What knows the wall's faces is brought up to date when faces are cut.
 class Resolver {
@@ -35,9 +31,10 @@ class Resolver {
         options_(options),
         monitor_(monitor),
         wall_(wallSurface(mesh)),
-        height_(prismHeights(mesh, wall_)),
-        mover_(mesh, options.limits, pointsNearWall(mesh, 1), &monitor),
-        snapper_(mover_, wall_, field, graph, height_) {}
+        height_(prismHeights(mesh, wall_)) {
+    mover_.emplace(mesh_, options_.limits, pointsNearWall(mesh_, 1), &monitor_);
+    snapper_.emplace(*mover_, wall_, field_, graph_, height_);
+  }
 
   /// Traces and snaps; nodes that miss make room for others in the next round.
   void snap() {
@@ -45,35 +42,31 @@ class Resolver {
     for (int round = 0; round < options_.rounds; ++round) {
       monitor_.check(0.05 + 0.75 * round / options_.rounds, "feature snapping");
       setTargets(history);
-      snapper_.snap(false);
-      snapper_.snap(true);
-      snapper_.workAround(snapper_.missed());
-      snapper_.relax();
-      snapper_.force();
-      if (snapper_.missed().empty()) break;
-      snapper_.report(history);
-      if (round + 1 < options_.rounds) cut(snapper_.helpfulCuts());
+      snapper_->snap(false);
+      snapper_->snap(true);
+      snapper_->workAround(snapper_->missed());
+      snapper_->relax();
+      snapper_->force();
+      if (snapper_->missed().empty()) break;
+      snapper_->report(history);
+      if (round + 1 < options_.rounds) cut(snapper_->helpfulCuts());
     }
-    for (bool corners : {false, true}) snapper_.snap(corners);  // where the last round has made room
-    snapper_.workAroundAll();
-    missed_ = snapper_.releaseMissed();
-    snapper_.relax();
+    for (bool corners : {false, true}) snapper_->snap(corners);  // where the last round has made room
+    snapper_->workAroundAll();
+    missed_ = snapper_->releaseMissed();
+    snapper_->relax();
     monitor_.check(0.8, "polishing");
-    snapper_.polish();
+    snapper_->polish();
+    snapper_->report(history);
+    dropNeedlessCuts();
+    bridge(history);
   }
 
-  /// Brings faces nearer to the geometry: by cuts, then by moves of their nodes. Cuts that brought nothing
-  /// are undone before.
+  /// Brings faces nearer to the geometry: by cuts, then by moves of their nodes.
   void fit() {
     monitor_.check(0.85, "fitting faces");
-    const auto isKept = [&](Id a, Id b) { return isOnFeature(a, b); };
-    for (;;) {
-      const std::vector<WallMerge> merges = needlessCuts(mover_, field_, isKept);
-      if (merges.empty()) break;
-      merge(merges);
-    }
-    cut(fittingCuts(mover_, field_));
-    fitWall(mover_, wall_, field_, fitRoles());
+    cut(fittingCuts(*mover_, field_));
+    fitWall(*mover_, wall_, field_, fitRoles());
   }
 
   const WallSurface& wall() const { return wall_; }
@@ -83,22 +76,47 @@ class Resolver {
   /// Of the cells behind these faces, wall faces have been cut or merged.
   void renew(const std::vector<Id>& cells) {
     wall_ = wallSurface(mesh_);
-    mover_.wallFacesChanged(cells);
+    mover_->wallFacesChanged(cells);
   }
   void cut(const std::vector<WallCut>& cuts) {
     if (cuts.empty()) return;
     std::vector<Id> cells;
     for (const WallCut& c : cuts) {
-      snapper_.noteChange(mesh_.faces[c.face]);
+      if (snapper_) snapper_->noteChange(mesh_.faces[c.face]);
       cells.push_back(mesh_.owner[c.face]);
     }
     const std::vector<WallCut> made = cutWallFaces(mesh_, cuts);
     renew(cells);
     for (;;) {
-      const std::vector<WallMerge> undo = cutsToUndo(mover_, made);
+      const std::vector<WallMerge> undo = cutsToUndo(*mover_, made);
       if (undo.empty()) return;
       merge(undo);
     }
+  }
+  /// Merges cuts that brought nothing.
+  void dropNeedlessCuts() {
+    const auto isKept = [&](Id a, Id b) { return isOnFeature(a, b); };
+    for (;;) {
+      const std::vector<WallMerge> merges = needlessCuts(*mover_, field_, isKept);
+      if (merges.empty()) return;
+      merge(merges);
+    }
+  }
+  /// New nodes where curves found none. The mover gives way meanwhile, and comes back for the new mesh.
+  void bridge(PathHistory& held) {
+    monitor_.check(0.83, "bridging gaps");
+    snapper_.reset();
+    mover_.reset();
+    const auto inSight = [&](const Vec3& from, const Vec3& to) { return seesFrom(from, to); };
+    for (int round = 0; round < kBridgeRounds; ++round) {
+      const std::vector<Id> added =
+          bridgeGaps(mesh_, {wall_, field_, graph_, held, options_.limits, inSight});
+      if (added.empty()) break;
+      wall_ = wallSurface(mesh_);
+      held.curve.insert(held.curve.end(), added.begin(), added.end());
+      held.corner.resize(held.curve.size(), kNone);
+    }
+    mover_.emplace(mesh_, options_.limits, pointsNearWall(mesh_, 1), &monitor_);
   }
   void merge(const std::vector<WallMerge>& merges) {
     std::vector<Id> cells;
@@ -109,14 +127,17 @@ class Resolver {
   void setTargets(const PathHistory& history) {
     FeaturePathOptions options;
     options.sees = [&](Id p, const Vec3& place) { return sees(p, place); };
-    options.canCut = [&](const WallCut& c) { return mover_.cutHolds(c); };
+    options.canCut = [&](const WallCut& c) { return mover_->cutHolds(c); };
     const FeaturePaths paths = traceFeatures(mesh_, wall_, graph_, options, history);
     cut(paths.cuts);
-    snapper_.setTargets(paths);
+    snapper_->setTargets(paths);
   }
   std::vector<FitRole> fitRoles() const;
   bool isOnFeature(Id a, Id b) const;
-  bool sees(Id p, const Vec3& place) const;
+  bool sees(Id p, const Vec3& place) const {
+    return mesh_.base[p] == kNone || seesFrom(mesh_.points[mesh_.base[p]], place);
+  }
+  bool seesFrom(const Vec3& from, const Vec3& place) const;
 
   PolyMesh& mesh_;
   const DistanceField& field_;
@@ -125,8 +146,8 @@ class Resolver {
   Monitor& monitor_;
   WallSurface wall_;
   const std::vector<double> height_;  // #W prism edges at the start
-  NodeMover mover_;
-  FeatureSnapper snapper_;
+  std::optional<NodeMover> mover_;
+  std::optional<FeatureSnapper> snapper_;
   std::vector<MissedTarget> missed_;
 };
 
@@ -151,11 +172,9 @@ std::vector<FitRole> Resolver::fitRoles() const {
   return roles;
 }
 
-// Seen from the lower end of the prism edge: sheets and walls of parts that touch have features behind them.
-bool Resolver::sees(Id p, const Vec3& place) const {
+// From the lower end of a prism edge: sheets and walls of parts that touch have features behind them.
+bool Resolver::seesFrom(const Vec3& from, const Vec3& place) const {
   constexpr double kThrough = 0.15;  // finest cells that may be left to the place where the geometry is met
-  if (mesh_.base[p] == kNone) return true;
-  const Vec3& from = mesh_.points[mesh_.base[p]];
   const Vec3 way = place - from;
   const double length = way.norm(), open = length - kThrough * mesh_.finestSize;
   return open <= 0 || !field_.model().crosses(from, from + open / length * way);

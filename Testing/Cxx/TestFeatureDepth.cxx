@@ -2,6 +2,7 @@
 // How deep cells on critical edges are split as needed.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -47,6 +48,28 @@ TEST(FeatureDepth, AsNeeded) {
   EXPECT_GT(h, 0.04 - 1e-12);
   const auto buffer = static_cast<std::uint8_t>(RefineReason::FeatureBuffer);
   EXPECT_GT(std::count(rim.refinedBy.begin(), rim.refinedBy.end(), buffer), 0) << "beside the rim as on it";
+}
+
+// A cube in no particular position: what asks at one place of an edge is answered along all of it.
+TEST(FeatureDepth, AsNeededKeepsOneSizeAlongAnEdge) {
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.9, Vec3(0.3, 0.5, 0.8).normalized()).toRotationMatrix();
+  const auto model = cube().mapped([&](const Vec3& p) { return turn * p; }).model();
+  OctreeDecomposeOptions o;
+  o.featureSize = 0.04;
+  const Octree tree = run(*model, o);
+  for (int axis = 0; axis < 3; ++axis)
+    for (int k = 0; k < 4; ++k) {
+      std::vector<double> sizes;
+      for (double t = 0.15; t < 0.86; t += 0.01) {  // at its ends another edge may ask for more
+        Vec3 p;
+        p[axis] = t;
+        p[(axis + 1) % 3] = k & 1;
+        p[(axis + 2) % 3] = k >> 1;
+        sizes.push_back(edgeAt(tree, turn * p));
+      }
+      const auto [least, most] = std::minmax_element(sizes.begin(), sizes.end());
+      EXPECT_EQ(*least, *most) << "edge " << k << " along " << axis;
+    }
 }
 
 // Two surfaces meet in a ridge at 35 degrees. Where they flatten out beside it, large cells would make it

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Some cells of a mesh as a mesh of its own, in which something can be tried out.
+#pragma once
+
+#include "PolyMesh.h"
+
+namespace pm {
+
+struct SubMesh {
+  PolyMesh mesh;            // its last patch, of type "patch", is where it was cut out
+  std::vector<Id> points;   // of the whole mesh, ascending: point i of the part is points[i]
+  std::vector<Id> cells;    // the same of cells
+  std::vector<Id> faces;    // #F of the whole mesh
+  std::vector<char> whole;  // #P all cells of the whole mesh at the point are in the part
+};
+
+/// cells: ascending. facesOfCell: of the whole mesh. Points, cells and faces keep their order; zones are left
+/// out.
+SubMesh subMesh(const PolyMesh& mesh, const Csr<Id>& facesOfCell, std::vector<Id> cells);
+
+}  // namespace pm
