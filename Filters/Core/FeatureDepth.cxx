@@ -91,6 +91,7 @@ FeatureDemand::FeatureDemand(const SurfaceModel& model, const OctreeDecomposeOpt
   if (options.refineSharp) kinds_ = static_cast<std::uint8_t>(~kSwitched);
   if (options.refineInterfaces) kinds_ |= kInterfaceEdge;
   if (options.refineOpen != OpenEdgeRefinement::None) kinds_ |= kOpenEdge;
+  for (const FeatureCurve& curve : graph_.curves()) length_.push_back(curve.length());
   if (!options.refineCorners) return;
   std::vector<std::uint8_t> met(graph_.corners().size(), 0);
   for (const FeatureSegment& s : graph_.segments())
@@ -126,13 +127,14 @@ FeatureDemand::Answer FeatureDemand::fullDepth(const Box& cell) const {
   return near ? Answer::Near : Answer::None;
 }
 
-std::vector<Id> FeatureDemand::curvesNear(const Box& cell) const {
+std::vector<Id> FeatureDemand::curvesNear(const Box& cell, double longest) const {
   const Box reach = grown(cell, std::max(cell.size().maxCoeff(), options_.featureBuffer * finest_));
   std::vector<Id> curves;
   for (Id s : graph_.segmentsNear(reach)) {
     const FeatureSegment& segment = graph_.segments()[s];
     if (!curves.empty() && curves.back() == segment.curve) continue;
-    if (counts(segment) && touches(reach, segment.a, segment.b)) curves.push_back(segment.curve);
+    if (length_[segment.curve] <= longest && counts(segment) && touches(reach, segment.a, segment.b))
+      curves.push_back(segment.curve);
   }
   return curves;
 }

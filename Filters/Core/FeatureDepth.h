@@ -8,7 +8,7 @@
 // sharp edge is none any more at the size of the cell, or one whose sides face each other by closeAngle. What
 // is left are cells with one straight piece of a curve, or one corner and the curves from it. Cells within
 // featureBuffer finest cells of a feature that asks follow it, as at full depth; and so do the other cells
-// along the same curve (RefinementCriteria::evenCurves).
+// along the same curve, if it is not long (RefinementCriteria::evenCurves).
 #pragma once
 
 #include <vector>
@@ -40,8 +40,9 @@ class FeatureDemand {
   };
   /// Thread-safe.
   Demand at(const Box& cell) const;
-  /// Curves of critical edges that run through a cell or a cell beside it, ascending. Thread-safe.
-  std::vector<Id> curvesNear(const Box& cell) const;
+  /// Curves of critical edges, up to a length, that run through a cell or a cell beside it, ascending.
+  /// Thread-safe.
+  std::vector<Id> curvesNear(const Box& cell, double longest) const;
 
   const FeatureGraph& graph() const { return graph_; }
 
@@ -61,6 +62,7 @@ class FeatureDemand {
   const double finest_;
   FeatureGraph graph_;
   std::uint8_t kinds_ = 0;       // FeatureKind bits that count
+  std::vector<double> length_;   // #curves
   std::vector<Id> loneCorners_;  // corners at which no counted curve ends
 };
 

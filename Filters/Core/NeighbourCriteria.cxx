@@ -180,14 +180,17 @@ void RefinementCriteria::fillIslands(Level& level) {
 
 // As needed, the cells along a critical edge and beside it are all as small as those where the surface asks
 // for the smallest. Where they change their size the front has a trench across the edge, as deep as the
-// larger ones, and the wall there often finds no nodes for the edge.
+// larger ones, and the wall there may find no nodes for the edge. An edge of more cells saves more than it
+// loses by changing its size.
 void RefinementCriteria::evenCurves(Level& level) const {
+  constexpr double kMostCells = 48;
   if (level.sides.empty() || features_.graph().curves().empty()) return;
   std::vector<std::atomic<bool>> asks(features_.graph().curves().size());
   const auto forCurves = [&](const auto& counts, const auto& body) {
     tbb::parallel_for(std::size_t(0), level.batch.size(), [&](std::size_t i) {
       if (level.row[i] == kNone || !counts(level.cause[i].reason)) return;
-      for (Id c : features_.curvesNear(level.builder.box(level.builder.node(level.batch[i])))) body(i, c);
+      const Box cell = level.builder.box(level.builder.node(level.batch[i]));
+      for (Id c : features_.curvesNear(cell, kMostCells * cell.size().maxCoeff())) body(i, c);
     });
   };
   forCurves(isOfTheSurface, [&](std::size_t, Id c) { asks[c].store(true, std::memory_order_relaxed); });
