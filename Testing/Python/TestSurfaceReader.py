@@ -5,6 +5,7 @@ import os
 import tarfile
 import tempfile
 import unittest
+import unittest.mock
 
 from support import Messages, arrays, box, differences, pm, sphere, strings
 from vtkmodules.vtkIOGeometry import vtkSTLWriter
@@ -128,8 +129,11 @@ class TestSurfaceReader(unittest.TestCase):
         path = self.write("x.stl.gz", "solid a\n" + FACET.format(0) * 200 + "endsolid\n", pack=True)
         with open(path, "r+b") as file:
             file.truncate(os.path.getsize(path) // 2)
-        self.assertRefused(path, "cannot be unpacked")
-        self.assertEqual([f for f in os.listdir(tempfile.gettempdir()) if f.startswith("surface") and f.endswith(".stl")], [])
+        room = os.path.join(self.folder.name, "room")  # of its own: others may be unpacking at the same time
+        os.mkdir(room)
+        with unittest.mock.patch.dict(os.environ, TMPDIR=room):
+            self.assertRefused(path, "cannot be unpacked")
+        self.assertEqual(os.listdir(room), [])
 
 
 if __name__ == "__main__":
