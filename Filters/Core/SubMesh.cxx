@@ -50,7 +50,6 @@ SubMesh subMesh(const PolyMesh& mesh, const Csr<Id>& facesOfCell, std::vector<Id
   m.patchTypes.push_back("patch");
   m.finestSize = mesh.finestSize;
   m.stage = mesh.stage;
-  part.whole.assign(part.points.size(), 1);
   std::vector<Id> row;
   for (Id f : part.faces) {
     row.clear();
@@ -66,8 +65,6 @@ SubMesh subMesh(const PolyMesh& mesh, const Csr<Id>& facesOfCell, std::vector<Id
     } else {
       m.patch.push_back(internal ? static_cast<Id>(m.patchNames.size()) - 1
                                  : mesh.patch[f - mesh.internalFaces()]);
-      if (internal)
-        for (Id p : row) part.whole[p] = 0;
     }
   }
   return part;

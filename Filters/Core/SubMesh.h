@@ -7,11 +7,10 @@
 namespace pm {
 
 struct SubMesh {
-  PolyMesh mesh;            // its last patch, of type "patch", is where it was cut out
-  std::vector<Id> points;   // of the whole mesh, ascending: point i of the part is points[i]
-  std::vector<Id> cells;    // the same of cells
-  std::vector<Id> faces;    // #F of the whole mesh
-  std::vector<char> whole;  // #P all cells of the whole mesh at the point are in the part
+  PolyMesh mesh;           // its last patch, of type "patch", is where it was cut out
+  std::vector<Id> points;  // of the whole mesh, ascending: point i of the part is points[i]
+  std::vector<Id> cells;   // the same of cells
+  std::vector<Id> faces;   // #F of the whole mesh
 };
 
 /// cells: ascending. facesOfCell: of the whole mesh. Points, cells and faces keep their order; zones are left
