@@ -106,7 +106,7 @@ class CutChooser::Impl {
         for (int side = 0; side < sidesOf(f); ++side) again.push_back(cellAt(f, side));
       }
     }
-    sortOut(again);
+    sortUnique(again);
     improve(std::move(again), monitor);
     moveNewPoints(monitor);
     checkVolumes(monitor);
@@ -253,8 +253,6 @@ class CutChooser::Impl {
            wedgeShape(prism, corner) > 0;
   }
 
-  static void sortOut(std::vector<Id>& ids) { sortUnique(ids); }
-
   /// Cells choose; those that none of their apexes suits have the faces cut otherwise, once for each face.
   void improve(std::vector<Id> cells, Monitor& monitor) {
     for (double round = 0; !cells.empty(); ++round) {
@@ -265,13 +263,13 @@ class CutChooser::Impl {
       for (Id c : cells)
         for (Id f : facesOf_[c])
           if (bad_[2 * f] || bad_[2 * f + 1]) faces.push_back(f);
-      sortOut(faces);
+      sortUnique(faces);
       forChunks(static_cast<Id>(faces.size()), monitor, fraction, "cutting faces",
                 [&](Id i) { settle(faces[i]); });
       cells.clear();
       for (Id f : faces)
         for (int side = 0; side < sidesOf(f); ++side) cells.push_back(cellAt(f, side));
-      sortOut(cells);
+      sortUnique(cells);
     }
   }
 

@@ -5,18 +5,19 @@
 #include <array>
 #include <utility>
 
+#include "DisjointSets.h"
 #include "WallCuts.h"
 
 namespace pm {
-namespace {
 
-bool has(Span<Id> row, Id p) { return std::find(row.begin(), row.end(), p) != row.end(); }
-
-/// Are a and b neighbours in the row?
 bool hasEdge(Span<Id> row, Id a, Id b) {
   const std::size_t k = std::find(row.begin(), row.end(), a) - row.begin(), n = row.size();
   return k < n && (row[(k + 1) % n] == b || row[(k + n - 1) % n] == b);
 }
+
+namespace {
+
+bool has(Span<Id> row, Id p) { return std::find(row.begin(), row.end(), p) != row.end(); }
 
 bool holds(Span<Id> row, const WallPlace& place) {
   return place.isNew() ? hasEdge(row, place.a, place.b) : has(row, place.a);
@@ -72,7 +73,8 @@ bool parts(Span<Id> row, const WallPlace& x, const WallPlace& y) {
 /// All that changes, and the mesh made anew from it.
 class Splitter {
  public:
-  Splitter(PolyMesh& mesh, const Csr<Id>& facesOfCell) : mesh_(mesh), facesOfCell_(facesOfCell) {}
+  Splitter(PolyMesh& mesh, const Csr<Id>& facesOfCell)
+      : mesh_(mesh), facesOfCell_(facesOfCell), touched_(mesh.points.size(), 0) {}
 
   void plan(const WallPath& path) {
     std::vector<Id> top, low;
@@ -97,7 +99,6 @@ class Splitter {
     std::sort(cuts_.begin(), cuts_.end(), byFace);
     std::sort(middles_.begin(), middles_.end());
     std::sort(halves_.begin(), halves_.end(), [](const auto& x, const auto& y) { return x.cell < y.cell; });
-    touched_.resize(mesh_.points.size(), 0);
     const std::vector<Id> patch = std::exchange(mesh_.patch, {});
     old_ = std::exchange(mesh_.faces, {});
     oldOwner_ = std::exchange(mesh_.owner, {});
@@ -127,7 +128,7 @@ class Splitter {
     mesh_.base.push_back(kNone);
     if (!mesh_.fixed.empty()) mesh_.fixed.push_back(mesh_.fixed[edge.a] & mesh_.fixed[edge.b]);
     middles_.push_back({std::minmax(edge.a, edge.b), id});
-    touched_.resize(mesh_.points.size(), 0);
+    touched_.push_back(0);
     touched_[edge.a] = touched_[edge.b] = 1;
     return id;
   }
@@ -190,33 +191,29 @@ class Splitter {
   void divide(Half& half) {
     const Id other = mesh_.neighbour[half.face];
     const Span<Id> side = mesh_.faces[half.face];
-    const auto ofSide = [&](Id p, Id q) { return hasEdge(side, p, q); };
-    std::vector<Id> group(half.faces.size());
-    for (std::size_t i = 0; i < group.size(); ++i) group[i] = static_cast<Id>(i);
-    for (bool changed = true; changed;) {
-      changed = false;
-      for (std::size_t i = 0; i < group.size(); ++i)
-        for (std::size_t j = 0; j < i; ++j) {
-          if (group[i] == group[j] || !hang(half.faces[i], half.faces[j], ofSide)) continue;
-          group[i] = group[j] = std::min(group[i], group[j]);
-          changed = true;
-        }
-    }
+    const std::size_t count = half.faces.size();
+    DisjointSets parts(count);
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        if (hang(half.faces[i], half.faces[j], side)) parts.join(static_cast<Id>(i), static_cast<Id>(j));
     // Outwards, a face of the old cell runs along the side's first edge the other way.
-    for (std::size_t i = 0; i < group.size(); ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
       if (!runs(half.faces[i], half.cell, side[0], side[1])) continue;
-      for (std::size_t j = 0; j < group.size(); ++j)
-        if (group[j] == group[i]) rename(half.faces[j], half.cell, other);
+      for (std::size_t j = 0; j < count; ++j) {
+        if (parts.root(static_cast<Id>(j)) != parts.root(static_cast<Id>(i))) continue;
+        const Id f = half.faces[j];
+        (mesh_.owner[f] == half.cell ? mesh_.owner[f] : mesh_.neighbour[f]) = other;
+      }
       return;
     }
   }
 
-  template <class Excluded>
-  bool hang(Id f, Id g, const Excluded& excluded) const {
+  /// Do two faces share an edge that is none of the side's?
+  bool hang(Id f, Id g, Span<Id> side) const {
     const Span<Id> x = mesh_.faces[f], y = mesh_.faces[g];
     for (std::size_t k = 0; k < x.size(); ++k) {
       const Id p = x[k], q = x[(k + 1) % x.size()];
-      if (hasEdge(y, p, q) && !excluded(p, q)) return true;
+      if (hasEdge(y, p, q) && !hasEdge(side, p, q)) return true;
     }
     return false;
   }
@@ -229,11 +226,6 @@ class Splitter {
     return k < row.size() && row[(k + 1) % row.size()] == q;
   }
 
-  void rename(Id f, Id cell, Id other) {
-    Id& side = mesh_.owner[f] == cell ? mesh_.owner[f] : mesh_.neighbour[f];
-    side = other;
-  }
-
   void turn(Id f) {
     std::swap(mesh_.owner[f], mesh_.neighbour[f]);
     std::reverse(mesh_.faces.values.begin() + mesh_.faces.offsets[f],
@@ -242,9 +234,9 @@ class Splitter {
 
   PolyMesh& mesh_;
   const Csr<Id>& facesOfCell_;
+  std::vector<char> touched_;                 // #P end of an edge with a new point
   std::vector<WallCut> cuts_;                 // of faces of any kind
   std::vector<std::pair<Edge, Id>> middles_;  // new points of edges
-  std::vector<char> touched_;                 // #P end of an edge with a new point
   std::vector<Half> halves_;
   Csr<Id> old_;
   std::vector<Id> oldOwner_, wide_, first_, second_;

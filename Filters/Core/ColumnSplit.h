@@ -25,6 +25,9 @@ struct WallPath {
   std::vector<Id> faces;
 };
 
+/// Are a and b neighbours in a face's row?
+bool hasEdge(Span<Id> row, Id a, Id b);
+
 /// Can the columns below the path be split? Their cells must be different prisms, each with a face below
 /// that holds the lower ends of both places; a new point's edge must have a quad between two columns below.
 bool canSplitColumns(const PolyMesh& mesh, const Csr<Id>& facesOfCell, const WallPath& path);

@@ -61,8 +61,7 @@ class BridgeBuilder {
   Id across(Id face, const WallPlace& edge) const;
   std::vector<Id> cellsAround(const WallPath& path) const;
   std::optional<Bridge> tryOut(const Gap& gap, const Proposal& proposal) const;
-  FeaturePaths targetsIn(const SubMesh& part, const Gap& gap, const Proposal& proposal,
-                         std::size_t oldPoints) const;
+  FeaturePaths targetsIn(const SubMesh& part, const Gap& gap, const Proposal& proposal) const;
 
   const PolyMesh& mesh_;
   const BridgeSite& site_;
@@ -118,12 +117,8 @@ std::vector<Gap> BridgeBuilder::findGaps() const {
 
 /// The wall face on the other side of an edge; kNone where there is none of another cell.
 Id BridgeBuilder::across(Id face, const WallPlace& edge) const {
-  for (Id f : wall_.faces[wall_.rowOf[edge.a]]) {
-    if (f == face || mesh_.owner[f] == mesh_.owner[face]) continue;
-    const Span<Id> row = mesh_.faces[f];
-    for (std::size_t k = 0; k < row.size(); ++k)
-      if (std::minmax(row[k], row[(k + 1) % row.size()]) == std::minmax(edge.a, edge.b)) return f;
-  }
+  for (Id f : wall_.faces[wall_.rowOf[edge.a]])
+    if (mesh_.owner[f] != mesh_.owner[face] && hasEdge(mesh_.faces[f], edge.a, edge.b)) return f;
   return kNone;
 }
 
@@ -218,9 +213,17 @@ std::vector<Id> innerPoints(const SubMesh& part, const Csr<Id>& facesOfCell) {
   return points;
 }
 
+/// The path in ids of the part.
+WallPath pathIn(const SubMesh& part, WallPath path) {
+  for (WallPlace& place : path.places) place = {part.pointOf(place.a), part.pointOf(place.b)};
+  for (Id& f : path.faces)
+    f = static_cast<Id>(std::find(part.faces.begin(), part.faces.end(), f) - part.faces.begin());
+  return path;
+}
+
 /// Nodes on features stay on them; the new ones go to the curve.
-FeaturePaths BridgeBuilder::targetsIn(const SubMesh& part, const Gap& gap, const Proposal& proposal,
-                                      std::size_t oldPoints) const {
+FeaturePaths BridgeBuilder::targetsIn(const SubMesh& part, const Gap& gap, const Proposal& proposal) const {
+  const std::size_t oldPoints = part.points.size();
   FeaturePaths paths;
   for (std::size_t p = 0; p < oldPoints; ++p) {
     const Id row = wall_.rowOf[part.points[p]];
@@ -230,17 +233,12 @@ FeaturePaths BridgeBuilder::targetsIn(const SubMesh& part, const Gap& gap, const
       paths.targets.push_back(
           {static_cast<Id>(p), corner == kNone ? curve : kNone, corner, part.mesh.points[p]});
   }
-  std::vector<Id> piece;
-  const auto local = [&](Id row) {
-    return static_cast<Id>(std::lower_bound(part.points.begin(), part.points.end(), wall_.nodes[row]) -
-                           part.points.begin());
-  };
-  piece.push_back(local(gap.from));
+  std::vector<Id> piece{part.pointOf(wall_.nodes[gap.from])};
   for (std::size_t i = 0; i < proposal.targets.size(); ++i) {
     piece.push_back(static_cast<Id>(oldPoints + 2 * i));
     paths.targets.push_back({piece.back(), gap.curve, kNone, proposal.targets[i]});
   }
-  piece.push_back(local(gap.to));
+  piece.push_back(part.pointOf(wall_.nodes[gap.to]));
   paths.pieces.push(piece);
   paths.pieceCurve.push_back(gap.curve);
   return paths;
@@ -249,40 +247,31 @@ FeaturePaths BridgeBuilder::targetsIn(const SubMesh& part, const Gap& gap, const
 std::optional<Bridge> BridgeBuilder::tryOut(const Gap& gap, const Proposal& proposal) const {
   SubMesh part = subMesh(mesh_, facesOfCell_, cellsAround(proposal.path));
   const Csr<Id> faces = cellFaces(part.mesh);
-  std::vector<Id> movable = innerPoints(part, faces);
-  WallPath path = proposal.path;
-  const auto localPoint = [&](Id& p) {
-    if (p != kNone)
-      p = static_cast<Id>(std::lower_bound(part.points.begin(), part.points.end(), p) - part.points.begin());
-  };
-  for (WallPlace& place : path.places) localPoint(place.a), localPoint(place.b);
-  for (Id& f : path.faces)
-    f = static_cast<Id>(std::find(part.faces.begin(), part.faces.end(), f) - part.faces.begin());
-  const std::size_t oldPoints = part.mesh.points.size();
-  splitColumns(part.mesh, faces, {path});
-  for (std::size_t p = oldPoints; p < part.mesh.points.size(); ++p) movable.push_back(static_cast<Id>(p));
+  const std::vector<Id> inner = innerPoints(part, faces);
+  splitColumns(part.mesh, faces, {pathIn(part, proposal.path)});
+  std::vector<Id> movable = inner;
+  for (std::size_t p = part.points.size(); p < part.mesh.points.size(); ++p)
+    movable.push_back(static_cast<Id>(p));
 
   NodeMover mover(part.mesh, site_.limits, movable);
   const WallSurface wall = wallSurface(part.mesh);
   const std::vector<double> height = prismHeights(part.mesh, wall);
   FeatureSnapper snapper(mover, wall, site_.field, site_.graph, height);
-  snapper.setTargets(targetsIn(part, gap, proposal, oldPoints));
+  snapper.setTargets(targetsIn(part, gap, proposal));
   snapper.snap(false);
   snapper.force();
   if (!snapper.missed().empty()) return {};
   for (Id p : movable)
     if (!mover.holdsAround(p)) return {};
   Bridge bridge{gap.curve, proposal.path, part.cells, {}, {}, {}};
-  for (Id p : movable)
-    if (p < static_cast<Id>(oldPoints)) {
-      const Span<Id> cells = cellsOfPoint_[part.points[p]];
-      bridge.changed.insert(bridge.changed.end(), cells.begin(), cells.end());
-    }
+  for (Id p : inner) {
+    const Id whole = part.points[p];
+    const Span<Id> cells = cellsOfPoint_[whole];
+    bridge.changed.insert(bridge.changed.end(), cells.begin(), cells.end());
+    if (part.mesh.points[p] != mesh_.points[whole]) bridge.moved.emplace_back(whole, part.mesh.points[p]);
+  }
   sortUnique(bridge.changed);
-  for (Id p : movable)
-    if (p < static_cast<Id>(oldPoints) && part.mesh.points[p] != mesh_.points[part.points[p]])
-      bridge.moved.emplace_back(part.points[p], part.mesh.points[p]);
-  bridge.added.assign(part.mesh.points.begin() + static_cast<std::ptrdiff_t>(oldPoints),
+  bridge.added.assign(part.mesh.points.begin() + static_cast<std::ptrdiff_t>(part.points.size()),
                       part.mesh.points.end());
   return bridge;
 }

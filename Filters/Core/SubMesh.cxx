@@ -27,6 +27,8 @@ std::vector<Id> sortedFaces(const PolyMesh& mesh, const Csr<Id>& facesOfCell, co
 
 }  // namespace
 
+Id SubMesh::pointOf(Id whole) const { return placeOf(points, whole); }
+
 SubMesh subMesh(const PolyMesh& mesh, const Csr<Id>& facesOfCell, std::vector<Id> cells) {
   SubMesh part;
   part.cells = std::move(cells);
@@ -36,7 +38,7 @@ SubMesh subMesh(const PolyMesh& mesh, const Csr<Id>& facesOfCell, std::vector<Id
   PolyMesh& m = part.mesh;
   for (Id p : part.points) {
     m.points.push_back(mesh.points[p]);
-    m.base.push_back(mesh.base[p] == kNone ? kNone : placeOf(part.points, mesh.base[p]));
+    m.base.push_back(part.pointOf(mesh.base[p]));
     m.fixed.push_back(mesh.fixed.empty() ? 0 : mesh.fixed[p]);
   }
   for (Id c : part.cells) {
@@ -53,7 +55,7 @@ SubMesh subMesh(const PolyMesh& mesh, const Csr<Id>& facesOfCell, std::vector<Id
   std::vector<Id> row;
   for (Id f : part.faces) {
     row.clear();
-    for (Id p : mesh.faces[f]) row.push_back(placeOf(part.points, p));
+    for (Id p : mesh.faces[f]) row.push_back(part.pointOf(p));
     const bool internal = f < mesh.internalFaces();
     const Id own = placeOf(part.cells, mesh.owner[f]);
     const Id other = internal ? placeOf(part.cells, mesh.neighbour[f]) : kNone;

@@ -11,6 +11,9 @@ struct SubMesh {
   std::vector<Id> points;  // of the whole mesh, ascending: point i of the part is points[i]
   std::vector<Id> cells;   // the same of cells
   std::vector<Id> faces;   // #F of the whole mesh
+
+  /// Point of the part that a point of the whole mesh is, kNone when it is none.
+  Id pointOf(Id whole) const;
 };
 
 /// cells: ascending. facesOfCell: of the whole mesh. Points, cells and faces keep their order; zones are left
