@@ -20,7 +20,7 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkProject : public vtkFoamLimitsStage {
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /** Drifting rounds; each moves a node a growing part of its way. */
+  /** Rounds of moves: the last four smooth the wall along the geometry, those before lead it there. */
   vtkSetClampMacro(Rounds, int, 1, 1000);
   vtkGetMacro(Rounds, int);
   ///@}

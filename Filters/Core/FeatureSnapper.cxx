@@ -27,7 +27,13 @@ std::vector<double> prismHeights(const PolyMesh& mesh, const WallSurface& wall) 
 
 FeatureSnapper::FeatureSnapper(NodeMover& mover, const WallSurface& wall, const DistanceField& field,
                                const FeatureGraph& graph, const std::vector<double>& height)
-    : mover_(mover), mesh_(mover.mesh()), wall_(wall), field_(field), graph_(graph), height_(height) {
+    : mover_(mover),
+      mesh_(mover.mesh()),
+      wall_(wall),
+      field_(field),
+      graph_(graph),
+      height_(height),
+      forced_(mover, wall) {
   changed_.assign(mesh_.points.size(), 1);
   innerTried_.assign(mesh_.points.size(), 0);
   smoothTried_.assign(wall.nodes.size(), 0);
@@ -252,7 +258,7 @@ bool FeatureSnapper::tryMove(Id row, const Vec3& to, double tolerance) {
   bool kept = false;
   if (b != kNone) {
     const Vec3 low = mesh_.points[b];
-    for (const Vec3& at : {Vec3(low + 0.5 * (to - from)), Vec3(low + to - from), flatBase(row, to)}) {
+    for (const Vec3& at : {Vec3(low + 0.5 * (to - from)), Vec3(low + to - from), forced_.flatBase(row, to)}) {
       kept = mover_.moveTogetherIf({p, b}, {to, at}, accept);
       if (isNear == false) return false;
       if (!kept) continue;
@@ -304,25 +310,6 @@ double FeatureSnapper::deviation(Id row, const Vec3& at, double enough) const {
   return worst;
 }
 
-Vec3 FeatureSnapper::wallNormal(Id row) const {
-  Vec3 sum = Vec3::Zero();
-  for (Id f : wall_.faces[row]) sum += mover_.faceNormal(f).normalized();
-  const double length = sum.norm();
-  return length > 0 ? Vec3(sum / length) : Vec3(Vec3::Zero());
-}
-
-Vec3 FeatureSnapper::neighbourMean(Id point) const {
-  Vec3 sum = Vec3::Zero();
-  double count = 0;
-  for (Id f : mover_.facesOf(point)) {
-    const Span<Id> row = mesh_.faces[f];
-    const std::size_t k = std::find(row.begin(), row.end(), point) - row.begin(), n = row.size();
-    sum += mesh_.points[row[(k + 1) % n]] + mesh_.points[row[(k + n - 1) % n]];
-    count += 2;
-  }
-  return sum / count;
-}
-
 /// Smoothing along the geometry (4.5.2): in the node's tangent plane, then back to the surface.
 void FeatureSnapper::smoothWallNode(Id row, bool onlyBetter) {
   const Id p = wall_.nodes[row];
@@ -330,7 +317,7 @@ void FeatureSnapper::smoothWallNode(Id row, bool onlyBetter) {
   Vec3 mean = Vec3::Zero();
   for (Id n : wall_.neighbours[row]) mean += mesh_.points[wall_.nodes[n]];
   mean /= static_cast<double>(wall_.neighbours[row].size());
-  const Vec3 n = wallNormal(row);
+  const Vec3 n = mover_.meanNormal(wall_.faces[row]);
   Vec3 step = mean - from;
   step -= n.dot(step) * n;
   const Vec3 to = field_.closest(from + 0.5 * step).point;
@@ -361,8 +348,8 @@ void FeatureSnapper::slideOnCurve(Id row) {
 void FeatureSnapper::settleBase(Id row, bool onlyBetter) {
   const Id p = wall_.nodes[row], b = mesh_.base[p];
   if (b == kNone) return;
-  const Vec3 upright = mesh_.points[p] - height_[row] * wallNormal(row);
-  const Vec3 ideal = 0.7 * upright + 0.3 * neighbourMean(b);
+  const Vec3 upright = mesh_.points[p] - height_[row] * mover_.meanNormal(wall_.faces[row]);
+  const Vec3 ideal = 0.7 * upright + 0.3 * mover_.neighbourMean(b);
   const Vec3 to = 0.5 * (mesh_.points[b] + ideal);
   if ((to - mesh_.points[b]).norm() < 0.01 * height_[row]) return;
   if (onlyBetter ? mover_.improve(b, to) : mover_.drift(b, to, 1) > 0) changed_[b] = pass_;
@@ -375,7 +362,7 @@ void FeatureSnapper::smoothInner() {
     if (!stirredBelow(p)) return;
     const double badness = mover_.badness(p);
     if (badness < kFine) return;
-    const Vec3 to = 0.5 * (mesh_.points[p] + neighbourMean(p));
+    const Vec3 to = 0.5 * (mesh_.points[p] + mover_.neighbourMean(p));
     if (mover_.improve(p, to, badness)) changed_[p] = pass_;
   });
 }

@@ -10,6 +10,7 @@
 
 #include "DistanceField.h"
 #include "FeaturePaths.h"
+#include "ForcedMove.h"
 #include "NodeMover.h"
 
 namespace pm {
@@ -71,8 +72,6 @@ class FeatureSnapper {
   bool canReach(Id row) const;
   bool improveNear(Id row, const Vec3& to, double badness);
   double deviation(Id row, const Vec3& at, double enough) const;
-  Vec3 wallNormal(Id row) const;
-  Vec3 neighbourMean(Id point) const;
   void smoothWallNode(Id row, bool onlyBetter);
   void slideOnCurve(Id row);
   void settleBase(Id row, bool onlyBetter);
@@ -80,10 +79,7 @@ class FeatureSnapper {
   bool stirred(Id row, std::vector<Id>& tried);
   bool stirredBelow(Id point);
   void smoothInner();
-  Vec3 flatBase(Id row, const Vec3& to) const;
-  std::vector<Id> mendingPoints(Id row) const;
   void forceNode(Id row, Span<Id> points);
-  void mendInner(Id point, const Vec3& ideal, double scale);
   void mendWallNode(Id row);
   double qualityAt(const std::vector<Vec3>& at, const std::vector<Id>& ids) const;
   WallCut cutFor(Id row) const;
@@ -96,13 +92,14 @@ class FeatureSnapper {
   const DistanceField& field_;
   const FeatureGraph& graph_;
   const std::vector<double>& height_;  // #W length that prism edges are drawn to
-  std::vector<char> isBase_;           // #P lower end of a prism edge
-  std::vector<Role> role_;             // #W
-  std::vector<Vec3> target_;           // #W
-  std::vector<Id> curve_, corner_;     // #W
-  std::vector<Id> before_, after_;     // #W neighbours on the path, kNone at its ends
-  Id pass_ = 1;                        // counts sweeps over rows or points
-  std::vector<Id> changed_;            // #P pass in which the point moved last
+  ForcedMove forced_;
+  std::vector<char> isBase_;        // #P lower end of a prism edge
+  std::vector<Role> role_;          // #W
+  std::vector<Vec3> target_;        // #W
+  std::vector<Id> curve_, corner_;  // #W
+  std::vector<Id> before_, after_;  // #W neighbours on the path, kNone at its ends
+  Id pass_ = 1;                     // counts sweeps over rows or points
+  std::vector<Id> changed_;         // #P pass in which the point moved last
   std::vector<Id> snapTried_, forceTried_, smoothTried_, settleTried_,
       innerTried_;                       // #W, and #P the last: pass of the last attempt
   std::vector<std::vector<Id>> active_;  // groups of wall nodes around targets

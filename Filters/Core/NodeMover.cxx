@@ -358,6 +358,18 @@ Id NodeMover::lastChange(Id p) const {
   return last;
 }
 
+Vec3 NodeMover::neighbourMean(Id p) const {
+  Vec3 sum = Vec3::Zero();
+  double count = 0;
+  for (Id f : facesOf(p)) {
+    const Span<Id> row = mesh_.faces[f];
+    const std::size_t k = std::find(row.begin(), row.end(), p) - row.begin(), n = row.size();
+    sum += mesh_.points[row[(k + 1) % n]] + mesh_.points[row[(k + n - 1) % n]];
+    count += 2;
+  }
+  return sum / count;
+}
+
 bool NodeMover::improveTogether(const std::vector<Id>& points, const std::vector<Vec3>& targets) {
   double worst = 0;
   for (Id p : points) worst = std::max(worst, badness(p));

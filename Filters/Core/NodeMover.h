@@ -185,6 +185,15 @@ class NodeMover {
     for (Id f : faces) sum += face(f).normal;
     return sum;
   }
+  /// Unit mean of the faces' unit normals, each face alike; zero where they cancel.
+  Vec3 meanNormal(Span<Id> faces) const {
+    Vec3 sum = Vec3::Zero();
+    for (Id f : faces) sum += face(f).normal.normalized();
+    const double length = sum.norm();
+    return length > 0 ? Vec3(sum / length) : Vec3(Vec3::Zero());
+  }
+  /// Mean of the points next to a movable point on its faces.
+  Vec3 neighbourMean(Id p) const;
   const Vec3& cellCentre(Id c) const { return cell(c).centre; }
 
  private:

@@ -6,28 +6,28 @@
 #include <cmath>
 #include <limits>
 
-#include "NodeMover.h"
-#include "WallSurface.h"
+#include "ForcedMove.h"
+#include "FreeFront.h"
 
 namespace pm {
 namespace {
 
-// A wall node this near, in units of its length scale, has arrived.
-constexpr double kArrived = 1e-4;
-// Smoothing steps below this part of the length scale are not worth their checks.
+// Steps below this part of the length scale are not worth their checks.
 constexpr double kSmallStep = 0.02;
 // Height of the wall prism the bases are led to, in units of the length scale: room for the layers, and near
 // enough that the octree cells below take up most of the stretch.
 constexpr double kPrismHeight = 0.4;
-constexpr int kFlatteningSweeps = 3;
-// Rounds after the front has arrived, in which it is only smoothed along the geometry.
-constexpr int kSettlingRounds = 2;
+// The last rounds, in which the front has arrived and is smoothed along the geometry.
+constexpr int kSettlingRounds = 4;
+// Webs: how far off the geometry their middle is at least, how hard they pull their nodes and how far at
+// most, in length scales.
+constexpr double kOff = 0.1, kPull = 0.3, kMostPull = 0.3;
 // A node farther than this from the geometry after projection, in length scales, is stuck. Rounds to free
 // such nodes, and the part of them or of their way that may be left when another round is worth it; while
 // they are few, of all wall nodes, it always is.
 constexpr double kStuck = 0.02;
-constexpr int kFreeingRounds = 12;
-constexpr double kWorthFreeing = 0.9, kFew = 0.002;
+constexpr int kFreeingRounds = 12, kRingsAroundStuck = 2;
+constexpr double kWorthFreeing = 0.8, kFew = 0.002;
 // Only points whose worst measure is this near its limit can be what holds a node.
 constexpr double kAtLimit = 0.8;
 // A node farther than this from the geometry, in length scales, may lie behind another wall; a wall is
@@ -38,21 +38,28 @@ constexpr int kInnerRings = 2;
 
 class Projector {
  public:
-  Projector(PolyMesh& mesh, const DistanceField& field, const ProjectOptions& options, const Monitor& monitor)
+  Projector(PolyMesh& mesh, const DistanceField& field, const ProjectOptions& options, Monitor& monitor)
       : mesh_(mesh),
         field_(field),
-        options_(options),
+        rounds_(options.rounds),
+        monitor_(monitor),
         mover_(mesh, options.limits, pointsNearWall(mesh, kInnerRings), &monitor),
-        wall_(wallSurface(mesh)) {
+        wall_(wallSurface(mesh)),
+        forced_(mover_, wall_) {
     wallBlocks_ = mover_.blocks(wall_.nodes);
     distance_.assign(wall_.size(), 0.0);
+    web_.assign(mesh.boundaryFaces(), 0.0);
     tried_.assign(wall_.size(), 0);
     baseOffset_.assign(wall_.size(), Vec3::Zero());
     witness_ = baseOffset_;
     placeWitnesses();
-    innerTried_.assign(mesh.points.size(), 0);
-    freeTried_ = innerTried_;
-    collectInner();
+    freeTried_.assign(mesh.points.size(), 0);
+  }
+
+  void run() {
+    drift();
+    settle();
+    freeStuck();
   }
 
   /// Wall nodes still short of the geometry, each with what refuses its way there; one that may go, goes.
@@ -69,23 +76,42 @@ class Projector {
     return stuck;
   }
 
-  void run(Monitor& monitor) {
-    const int rounds = std::max(options_.rounds, 1);
-    for (int sweep = 0; sweep < kFlatteningSweeps; ++sweep) {
-      monitor.check(0, "front flattening");
-      flattenFront();
+ private:
+  int driftingRounds() const { return std::max(1, rounds_ - kSettlingRounds); }
+
+  // 4.6.2, gradual front drifting: to where the front would go if it were a surface by itself.
+  void drift() {
+    monitor_.check(0, "front smoothing");
+    const std::vector<Vec3> goal = freeFront(
+        mesh_, wall_, [&](Id row, const Vec3& from) { return wayToGeometry(row, from); }, monitor_);
+    for (int left = driftingRounds(); left > 0; --left) {
+      monitor_.check(0.1 + 0.3 * (1 - double(left) / driftingRounds()), "projection");
+      placeBases();
+      mover_.forEach(wallBlocks_, [&](Id p) {
+        const Id row = wall_.rowOf[p];
+        const Vec3 way = (goal[row] - mesh_.points[p]) / left;
+        if (moveWithBase(p, row, mesh_.points[p] + way)) return;
+        if (!movePrismEdge(p, way)) movePrismEdge(p, 0.5 * way);
+        if (left == 1) approachNode(p, row);
+      });
     }
-    for (int round = 0; round < rounds; ++round) {
-      monitor.check(0.9 * round / rounds, "projection");
-      // The way is spread over the first rounds, so that all parts of the front arrive together: at a thin
-      // edge, one side that comes first leaves the other no room.
-      approach(1.0 / std::max(1, rounds - kSettlingRounds - round));
-      if (round % 3 == 2) smoothInner();
+  }
+
+  // 4.5.2, front smoothing: along the geometry, and webs into their gaps.
+  void settle() {
+    for (int round = driftingRounds(); round < rounds_; ++round) {
+      monitor_.check(0.4 + 0.4 * (round - driftingRounds()) / kSettlingRounds, "front smoothing");
+      findWebs();
+      approach(wallBlocks_);
     }
+    std::fill(web_.begin(), web_.end(), 0.0);
+  }
+
+  void freeStuck() {
     std::size_t countBefore = wall_.nodes.size();
     double wayBefore = std::numeric_limits<double>::infinity();
     for (int round = 0; round < kFreeingRounds; ++round) {
-      monitor.check(0.9 + 0.1 * round / kFreeingRounds, "freeing stuck nodes");
+      monitor_.check(0.8 + 0.2 * round / kFreeingRounds, "freeing stuck nodes");
       const std::vector<Id> stuck = stuckNodes();
       double way = 0;
       for (Id row : stuck) way += distance_[row];
@@ -94,18 +120,11 @@ class Projector {
       if (stuck.empty() || !(fewer || nearer || stuck.size() <= kFew * wall_.size())) break;
       countBefore = stuck.size();
       wayBefore = way;
+      forceNodes(stuck);
       freeNodes(stuck);
-      approach(1);
+      approach(mover_.blocks(nodesAround(stuck)));
     }
-    approach(1);
-  }
-
- private:
-  /// Outward unit normal of the wall at a node, from the faces around it.
-  Vec3 normalAt(Id p) const {
-    const Vec3 n = mover_.areaVector(wall_.faces[wall_.rowOf[p]]);
-    const double length = n.norm();
-    return length > 0 ? Vec3(n / length) : n;
+    approach(wallBlocks_);
   }
 
   /// Mean of the centres of the wall faces around a node, weighted by area (so that hanging nodes on the
@@ -127,25 +146,13 @@ class Projector {
     return true;
   }
 
-  // 4.5.1: smoothing flattens the front's stairs before it moves; a stair's riser has to lie down in the
-  // surface, and folds if it is still upright when it gets there.
-  void flattenFront() {
-    placeBases();
-    mover_.forEach(wallBlocks_, [&](Id p) {
-      const Id row = wall_.rowOf[p];
-      const Vec3 x = mesh_.points[p];
-      Vec3 mean, normal;
-      if (meanAround(row, mean, normal) && !moveWithBase(p, row, x + 0.5 * mean))
-        mover_.move(p, x + 0.25 * mean);
-    });
-  }
-
   // 4.5.3: where the bases ought to be, below their wall nodes at one smooth height; ideal places are
   // averaged with the neighbours'.
   void placeBases() {
     std::vector<Vec3> smooth(wall_.size());
     tbb::parallel_for(Id(0), wall_.size(), [&](Id row) {
-      baseOffset_[row] = -kPrismHeight * wall_.scale[row] * normalAt(wall_.nodes[row]);
+      const Vec3 normal = mover_.areaVector(wall_.faces[row]).stableNormalized();
+      baseOffset_[row] = -kPrismHeight * wall_.scale[row] * normal;
     });
     for (int sweep = 0; sweep < 2; ++sweep) {
       tbb::parallel_for(Id(0), wall_.size(), [&](Id row) {
@@ -168,34 +175,62 @@ class Projector {
     return mover_.move(p, target);
   }
 
-  // 4.6.2, front drifting, and 4.5.2, front smoothing, in one: a step in the tangent plane of the mesh
-  // towards the middle of the faces around, and from there part of the way to the closest point.
-  void approach(double part) {
-    if (part != lastPart_) std::fill(tried_.begin(), tried_.end(), 0);
-    lastPart_ = part;
-    placeBases();
-    mover_.forEach(wallBlocks_, [&](Id p) {
-      const Id row = wall_.rowOf[p];
-      if (mover_.worthTrying(p, tried_[row])) approachNode(p, row, part);
+  bool movePrismEdge(Id p, const Vec3& way) {
+    const Id b = mesh_.base[p];
+    return mover_.moveTogether({p, b}, {mesh_.points[p] + way, mesh_.points[b] + way});
+  }
+
+  // A face over a gap has its nodes on the gap's lips, where closest points would keep them; what lies in the
+  // gap behind would stay unmeshed. Such webs are the faces whose centre is off the geometry on the domain's
+  // side.
+  void findWebs() {
+    tbb::parallel_for(Id(0), mesh_.boundaryFaces(), [&](Id b) {
+      if (!mesh_.isWallPatch(mesh_.patch[b])) return;
+      const Id f = mesh_.internalFaces() + b, row = wall_.rowOf[mesh_.faces[f][0]];
+      const Vec3& centre = mover_.faceCentre(f);
+      const double distance = std::sqrt(field_.closest(centre).distance2), scale = wall_.scale[row];
+      const bool isWeb = distance >= kOff * scale && !field_.model().crosses(witness_[row], centre);
+      web_[b] = isWeb ? std::min(distance, scale) : 0.0;
     });
   }
 
-  void approachNode(Id p, Id row, double part) {
+  /// The step by which webs pull a node along their normals; from there its way to the geometry leads down
+  /// the lip.
+  Vec3 pullOfWebs(Id row) const {
+    Vec3 sum = Vec3::Zero();
+    for (Id f : wall_.faces[row])
+      if (const double off = web_[f - mesh_.internalFaces()]; off > 0)
+        sum += kPull * off * mover_.faceNormal(f).stableNormalized();
+    const double length = sum.norm(), most = kMostPull * wall_.scale[row];
+    return length > most ? Vec3(most / length * sum) : sum;
+  }
+
+  // 4.6.2, front drifting, and 4.5.2, front smoothing, in one: a step in the tangent plane of the mesh
+  // towards the middle of the faces around, and from there to the geometry.
+  void approach(const MoveBlocks& blocks) {
+    placeBases();
+    mover_.forEach(blocks, [&](Id p) {
+      const Id row = wall_.rowOf[p];
+      if (mover_.worthTrying(p, tried_[row])) approachNode(p, row);
+    });
+  }
+
+  void approachNode(Id p, Id row) {
     const Vec3 x = mesh_.points[p];
     Vec3 mean, n;
+    distance_[row] = 0;
     if (meanAround(row, mean, n)) {
-      const Vec3 step = 0.5 * (mean - mean.dot(n) * n);
-      if (step.norm() > kSmallStep * wall_.scale[row] && driftPart(p, row, x + step, part)) return;
+      const Vec3 step = 0.5 * (mean - mean.dot(n) * n) + pullOfWebs(row);
+      if (step.norm() > kSmallStep * wall_.scale[row] &&
+          moveWithBase(p, row, x + step + wayToGeometry(row, x + step)))
+        return;
     }
-    if (driftPart(p, row, x, part)) return;
-    // The prism is in the way: take its foot along.
     const Vec3 way = wayToGeometry(row, x);
-    const double distance = way.norm(), wanted = distance < kArrived * wall_.scale[row] ? 1 : part;
+    if (moveWithBase(p, row, x + way)) return;
+    // The prism is in the way: take its foot along.
     const Id b = mesh_.base[p];
-    if (mover_.moveTogether({p, b}, {x + wanted * way, mesh_.points[b] + 0.5 * wanted * way}))
-      distance_[row] = (1 - wanted) * distance;
-    else
-      distance_[row] = (1 - 0.5 * wanted * mover_.drift(p, x + 0.5 * wanted * way, 2)) * distance;
+    if (mover_.moveTogether({p, b}, {x + way, mesh_.points[b] + 0.5 * way})) return;
+    distance_[row] = (1 - 0.5 * mover_.drift(p, x + 0.5 * way, 2)) * way.norm();
   }
 
   // To the closest point, if the octree cell behind the wall sees it: its centre lies in the domain. A front
@@ -225,27 +260,6 @@ class Projector {
     });
   }
 
-  /// Moves p to where part of the way from `from` to the geometry leads; false when it may not.
-  bool driftPart(Id p, Id row, const Vec3& from, double part) {
-    const Vec3 way = wayToGeometry(row, from);
-    const double distance = way.norm();
-    const double wanted = distance < kArrived * wall_.scale[row] ? 1 : part;
-    if (!moveWithBase(p, row, from + wanted * way)) return false;
-    distance_[row] = (1 - wanted) * distance;
-    return true;
-  }
-
-  // 4.5.1: Laplacian, kept only where the worst local measure gets better.
-  void smoothInner() {
-    mover_.forEach(innerBlocks_, [&](Id p) {
-      if (!mover_.worthTrying(p, innerTried_[p])) return;
-      Vec3 mean = Vec3::Zero();
-      for (Id c : mover_.cellsOf(p)) mean += mover_.cellCentre(c);
-      const Vec3 step = 0.5 * (mean / double(mover_.cellsOf(p).size()) - mesh_.points[p]);
-      if (step.norm() > kSmallStep * mesh_.finestSize) mover_.improve(p, mesh_.points[p] + step);
-    });
-  }
-
   std::vector<Id> stuckNodes() const {
     std::vector<Id> rows;
     for (Id row = 0; row < wall_.size(); ++row)
@@ -253,8 +267,40 @@ class Projector {
     return rows;
   }
 
-  // A node short of the geometry is held by a cell at a limit, often by a single sheared prism. The points of
-  // its cells search around themselves for a place where the worst measure is better (4.5, second strategy).
+  /// The nodes of these rows and of some rings around them.
+  std::vector<Id> nodesAround(std::vector<Id> rows) const {
+    for (int ring = 0; ring < kRingsAroundStuck; ++ring) {
+      const std::size_t inner = rows.size();
+      for (std::size_t i = 0; i < inner; ++i) {
+        const Span<Id> next = wall_.neighbours[rows[i]];
+        rows.insert(rows.end(), next.begin(), next.end());
+      }
+      sortUnique(rows);
+    }
+    for (Id& row : rows) row = wall_.nodes[row];
+    return rows;
+  }
+
+  // A node short of the geometry goes there by force, and its neighbours give way along the geometry.
+  void forceNodes(const std::vector<Id>& stuck) {
+    Csr<Id> points;
+    for (Id row : stuck) points.push(forced_.points(row));
+    mover_.forEach(mover_.colourRows(points), [&](Id i) {
+      const Vec3& x = mesh_.points[wall_.nodes[stuck[i]]];
+      const Vec3 to = x + wayToGeometry(stuck[i], x);
+      if (forced_.force(stuck[i], points[i], to, [&](Id row) { giveWay(row); })) distance_[stuck[i]] = 0;
+    });
+  }
+
+  void giveWay(Id row) {
+    const bool arrived = distance_[row] < kStuck * wall_.scale[row];
+    forced_.mendAlongWall(row, [&](const Vec3& to, double badness) {
+      return mover_.improve(wall_.nodes[row], arrived ? field_.closest(to).point : to, badness);
+    });
+  }
+
+  // It is held by a cell at a limit, often by a single sheared prism. The points of its cells search around
+  // themselves for a place where the worst measure is better (4.5, second strategy).
   void freeNodes(const std::vector<Id>& stuck) {
     std::vector<Id> around;
     for (Id row : stuck)
@@ -276,30 +322,20 @@ class Projector {
     });
   }
 
-  // Rings of nodes below the bases, by cells.
-  void collectInner() {
-    std::vector<std::uint8_t> marked(mesh_.points.size(), 0);
-    for (Id p : wall_.nodes) marked[p] = marked[mesh_.base[p]] = 1;
-    std::vector<Id> inner;
-    for (int k = 0; k < kInnerRings; ++k) {
-      const std::vector<Id> ring = nextRing(mesh_, marked);
-      inner.insert(inner.end(), ring.begin(), ring.end());
-    }
-    innerBlocks_ = mover_.blocks(inner);
-  }
-
   PolyMesh& mesh_;
   const DistanceField& field_;
-  const ProjectOptions& options_;
+  const int rounds_;
+  Monitor& monitor_;
   NodeMover mover_;
-  WallSurface wall_;
-  MoveBlocks wallBlocks_, innerBlocks_;
-  std::vector<double> distance_;            // of each wall node to the geometry, as its last drift left it
-  double lastPart_ = 0;                     // of the way, in the last drift
-  std::vector<Vec3> baseOffset_;            // #W ideal place of each base from its wall node
-  std::vector<Vec3> witness_;               // #W a place in the domain behind each node
-  std::vector<Id> tried_;                   // #W tick of the last attempt
-  std::vector<Id> innerTried_, freeTried_;  // #P
+  const WallSurface wall_;
+  const ForcedMove forced_;
+  MoveBlocks wallBlocks_;
+  std::vector<double> distance_;  // #W to the geometry, as the node's last approach left it
+  std::vector<double> web_;       // #boundary faces, of webs: how far their centre is off the geometry
+  std::vector<Vec3> baseOffset_;  // #W ideal place of each base from its wall node
+  std::vector<Vec3> witness_;     // #W a place in the domain behind each node
+  std::vector<Id> tried_;         // #W tick of the last attempt
+  std::vector<Id> freeTried_;     // #P
 };
 
 }  // namespace
@@ -312,7 +348,7 @@ void project(PolyMesh& mesh, DistanceField& field, const ProjectOptions& options
     if (mesh.base[p] != kNone) walls.push_back(mesh.points[p]);
   field.fill(walls);
   Projector projector(mesh, field, options, monitor);
-  projector.run(monitor);
+  projector.run();
   const std::vector<StuckNode> told = projector.tellStuck();
   if (stuck != nullptr) *stuck = told;
   mesh.stage = Stage::Projected;

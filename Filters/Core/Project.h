@@ -10,7 +10,7 @@
 namespace pm {
 
 struct ProjectOptions {
-  int rounds = 8;  ///< drifting rounds; each moves a node a growing part of its way
+  int rounds = 8;  ///< the last four smooth the front along the geometry, those before lead it there
   QualityLimits limits;
 };
 

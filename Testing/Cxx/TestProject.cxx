@@ -97,6 +97,51 @@ TEST(Project, ADirtySoupStillEndsValid) {
   EXPECT_GT(within(mesh, *model, 0.05 * 0.1), 0.95);
 }
 
+/// A block with a V-shaped groove along y in its top, 1.6 wide and 1.2 deep, turned about z.
+Soup groovedBlock(double angle) {
+  const std::vector<std::array<double, 2>> outline = {{-2, -2},  {2, -2},   {2, 1}, {0.8, 1},
+                                                      {0, -0.2}, {-0.8, 1}, {-2, 1}};
+  Soup soup;
+  const auto at = [&](std::size_t i, double y) {
+    const auto [x, z] = outline[i % outline.size()];
+    return Vec3(std::cos(angle) * x - std::sin(angle) * y, std::sin(angle) * x + std::cos(angle) * y, z);
+  };
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    soup.add(at(i, -2), at(i + 1, -2), at(i + 1, 2));
+    soup.add(at(i, -2), at(i + 1, 2), at(i, 2));
+  }
+  for (double y : {-2.0, 2.0})
+    for (const std::array<std::size_t, 3>& t :
+         {std::array<std::size_t, 3>{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {4, 5, 6}, {6, 0, 4}})
+      soup.add(at(t[0], y), at(t[1], y), at(t[2], y));
+  return soup;
+}
+
+TEST(Project, WebsAreDrawnIntoTheirGaps) {
+  // The mesh around the block; how far above the groove's bottom does it end?
+  double sum = 0;
+  for (int k = 0; k < 6; ++k) {
+    const auto model = groovedBlock(0.1 + 0.2 * k).model();
+    Monitor monitor;
+    OctreeDecomposeOptions o;
+    o.featureSize = 0.4;
+    PaintFrontOptions outside;
+    outside.region = Region::Outside;
+    PolyMesh mesh =
+        dummyLayer(paintFront(decompose(*model, o, monitor), *model, outside, monitor), {}, monitor);
+    DistanceField field(*model, mesh.finestSize);
+    project(mesh, field, {}, monitor);
+    const MeshMeasures m = measure(mesh);
+    EXPECT_EQ(summarise(mesh, m, {}).violations, 0) << describeViolations(mesh, m, {});
+    double lowest = 1;
+    for (std::size_t p = 0; p < mesh.points.size(); ++p)
+      if (mesh.base[p] != kNone && mesh.points[p].head<2>().norm() < 1.2)
+        lowest = std::min(lowest, std::abs(mesh.points[p].z() + 0.2));
+    sum += lowest / mesh.finestSize;
+  }
+  EXPECT_LT(sum / 6, 0.3) << "without the pull of webs it is 0.43";
+}
+
 TEST(Project, SameBitsForAnyThreadCountAndWithoutTheCache) {
   const auto model = cylinder(40).model();
   std::uint64_t one = 0, three = 0, uncached = 0;
