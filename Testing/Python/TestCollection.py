@@ -55,7 +55,7 @@ class Collection(unittest.TestCase):
             self.assertEqual(mesh["status"], "mesh")
             self.assertGreater(mesh["cells"], 500)
             self.assertEqual(mesh["layered"], mesh["wall_faces"])
-            self.assertGreater(min(mesh["near"], mesh["wall"]), 0.9)
+            self.assertGreater(min(mesh["near"], mesh["wall"]), 0.85)
             self.assertLessEqual(mesh["finest"], 1.001 * mesh["diagonal"] / 25)
             self.assertEqual(mesh["quality"]["AngleInternal"]["Outside"], 0)
         self.assertEqual(sorted(os.listdir(kept)), ["pipe_stl_gz_25_0_inside", "pipe_stl_gz_25_0_outside",
