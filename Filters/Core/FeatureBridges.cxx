@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "FeatureSnapper.h"
+#include "ForcedMove.h"
 #include "NodeMover.h"
 #include "SubMesh.h"
 
@@ -244,6 +245,17 @@ FeaturePaths BridgeBuilder::targetsIn(const SubMesh& part, const Gap& gap, const
   return paths;
 }
 
+/// A split may leave measures outside their limits that no node on the curve is to blame for: the points
+/// there that are off the wall give way.
+void mendSplit(NodeMover& mover, const WallSurface& wall, const std::vector<Id>& points) {
+  constexpr int kSweeps = 3;
+  const ForcedMove forced(mover, wall);
+  for (int sweep = 0; sweep < kSweeps; ++sweep)
+    for (Id p : points)
+      if (wall.rowOf[p] == kNone && !mover.holdsAround(p))
+        forced.mendInner(p, mover.neighbourMean(p), mover.mesh().finestSize);
+}
+
 std::optional<Bridge> BridgeBuilder::tryOut(const Gap& gap, const Proposal& proposal) const {
   SubMesh part = subMesh(mesh_, facesOfCell_, cellsAround(proposal.path));
   const Csr<Id> faces = cellFaces(part.mesh);
@@ -261,6 +273,7 @@ std::optional<Bridge> BridgeBuilder::tryOut(const Gap& gap, const Proposal& prop
   snapper.snap(false);
   snapper.force();
   if (!snapper.missed().empty()) return {};
+  mendSplit(mover, wall, movable);
   for (Id p : movable)
     if (!mover.holdsAround(p)) return {};
   Bridge bridge{gap.curve, proposal.path, part.cells, {}, {}, {}};

@@ -68,7 +68,6 @@ bool ForcedMove::force(Id row, Span<Id> points, const Vec3& to, const MendWall& 
   return trial.settle();
 }
 
-/// Tries places around a point that make the worst measure there better, until all are within their limits.
 void ForcedMove::mendInner(Id point, const Vec3& ideal, double scale) const {
   double bad = mover_.badness(point);
   const auto attempt = [&](const Vec3& to) {

@@ -33,10 +33,11 @@ class ForcedMove {
   /// A place for the lower end of the prism edge from `to`, near where it is, that makes the side faces
   /// around the edge flat: the least sum of squares of distances from their planes.
   Vec3 flatBase(Id row, const Vec3& to) const;
-
- private:
+  /// Tries places around a point off the wall, the ideal one first, that make the worst measure there better,
+  /// until all are within their limits.
   void mendInner(Id point, const Vec3& ideal, double scale) const;
 
+ private:
   NodeMover& mover_;
   const WallSurface& wall_;
 };

@@ -62,6 +62,29 @@ TEST(ForcedMove, EndsValidOrPutsEverythingBack) {
   EXPECT_GT(all.notByAMove, 20) << "the neighbours' giving way is what makes the difference";
 }
 
+TEST(ForcedMove, MendsAPointOffTheWall) {
+  int broken = 0, mended = 0;
+  for (unsigned seed = 0; seed < 5; ++seed) {
+    const PolyMesh whole = layer(seed);
+    const WallSurface wall = wallSurface(whole);
+    std::mt19937_64 g(seed);
+    for (Id p = 0; p < static_cast<Id>(whole.points.size()); ++p) {
+      PolyMesh mesh = whole;
+      if (wall.rowOf[p] != kNone || mesh.fixed[p] != 0) continue;
+      mesh.points[p] += 0.5 * mesh.finestSize * randomPoint(g, -1, 1);
+      NodeMover mover(mesh, {});
+      const double before = mover.badness(p);
+      if (before <= 1) continue;
+      ++broken;
+      ForcedMove(mover, wall).mendInner(p, mover.neighbourMean(p), mesh.finestSize);
+      EXPECT_LE(mover.badness(p), before);
+      mended += mover.badness(p) <= 1;
+    }
+  }
+  EXPECT_GT(broken, 50);
+  EXPECT_GT(mended, 0.8 * broken);
+}
+
 TEST(ForcedMove, TakesTheColumnFirstThenItsNeighbours) {
   PolyMesh mesh = layer(2);
   const WallSurface wall = wallSurface(mesh);
