@@ -163,6 +163,28 @@ void raiseAgain(LayerColumns& columns, LayerPoints& points, LayerCheck& check,
   }
 }
 
+/// Takes a layer from each of these columns; returns all whose layers or edges have changed.
+std::vector<Id> lower(LayerColumns& columns, const std::vector<LayerCheck::Fault>& faults) {
+  for (const LayerCheck::Fault& fault : faults)
+    columns.setLayers(fault.column, columns.layers(fault.column) - 1, fault.reason);
+  std::vector<Id> graded = grade(columns, columnsOf(faults));
+  columns.updateEdges(graded);
+  return graded;
+}
+
+/// Layers divide faces of the cells beside columns, too, and ends of edges that have moved change their
+/// shape; such a cell may reach columns far from any that was looked at. What that breaks shows when all is
+/// done.
+void lowerBesideCells(LayerColumns& columns, LayerCheck& check, Monitor& monitor) {
+  for (;;) {
+    monitor.check(0.7, kChoosing);
+    check.measureBeside();
+    const std::vector<LayerCheck::Fault> faults = check.columnsToLower(allColumns(columns));
+    if (faults.empty()) return;
+    lower(columns, faults);
+  }
+}
+
 /// Where a cell or face would break a limit, looks for another shape, and takes layers away when there is
 /// none, until no limit is broken; in the end gives back what can be.
 void lowerUntilValid(PolyMesh& mesh, LayerColumns& columns, LayerPoints& points, const WallSight& sight,
@@ -187,14 +209,11 @@ void lowerUntilValid(PolyMesh& mesh, LayerColumns& columns, LayerPoints& points,
       sortUnique(changed);
       faults = check.columnsToLower(touched(columns, changed));
     }
-    for (const LayerCheck::Fault& fault : faults)
-      columns.setLayers(fault.column, columns.layers(fault.column) - 1, fault.reason);
-    const std::vector<Id> graded = grade(columns, columnsOf(faults));
-    columns.updateEdges(graded);
-    changed = touched(columns, graded);
+    changed = touched(columns, lower(columns, faults));
     faults = check.columnsToLower(changed);
   }
   raiseAgain(columns, points, check, planned, monitor);
+  lowerBesideCells(columns, check, monitor);
 }
 
 }  // namespace

@@ -53,30 +53,36 @@ LayerCheck::LayerCheck(const PolyMesh& mesh, const LayerColumns& columns, const 
   centres_.ofColumns.resize(centres_.start.back());
   centres_.ofOtherCells.resize(mesh.cellCount);
   seen_.assign(mesh.faceCount(), 0);
-  std::vector<Id> beside;
   for (Id f = 0; f < mesh.internalFaces(); ++f) {
     const Id a = mesh.owner[f], b = mesh.neighbour[f];
     const bool columnA = columns.columnOf(a) != kNone, columnB = columns.columnOf(b) != kNone;
-    if (columnA != columnB) beside.push_back(columnA ? b : a);
+    if (columnA != columnB) beside_.push_back(columnA ? b : a);
   }
-  sortUnique(beside);
-  forEach(beside.size(), [&](std::size_t i) { measureBeside(beside[i]); });
+  sortUnique(beside_);
+  measureBeside();
+}
+
+void LayerCheck::measureBeside() {
+  forEach(beside_.size(), [&](std::size_t i) { measureBeside(beside_[i]); });
 }
 
 void LayerCheck::measureBeside(Id cell) {
-  thread_local std::vector<Vec3> faceCentres;
-  thread_local std::vector<Id> cellPoints;
-  const Span<Id> faces = columns_.facesOf(cell);
-  faceCentres.clear();
-  cellPoints.clear();
-  for (Id f : faces) {
-    faceCentres.push_back(measureFace(points_, mesh_.faces[f], true).centre);
-    cellPoints.insert(cellPoints.end(), mesh_.faces[f].begin(), mesh_.faces[f].end());
-  }
+  thread_local std::vector<Vec3> centres;
+  thread_local std::vector<Id> row, cellPoints;
+  thread_local Csr<Id> rows;
+  thread_local std::vector<int> signs;
+  rows.clear(), centres.clear(), signs.clear(), cellPoints.clear();
+  for (Id f : columns_.facesOf(cell))
+    for (Id piece = 1; piece <= columns_.pieces(f); ++piece) {
+      columns_.pieceRow(f, piece, row);
+      rows.push(row);
+      signs.push_back(mesh_.owner[f] == cell ? 1 : -1);
+      centres.push_back(measureFace(points_, span(row), true).centre);
+      cellPoints.insert(cellPoints.end(), row.begin(), row.end());
+    }
   sortUnique(cellPoints);
   const CellMeasures m = measureCell(points_, span(cellPoints), [&](const auto& body) {
-    for (std::size_t i = 0; i < faces.size(); ++i)
-      body(mesh_.faces[faces[i]], mesh_.owner[faces[i]] == cell ? 1 : -1, faceCentres[i]);
+    for (Id i = 0; i < rows.rows(); ++i) body(rows[i], signs[i], centres[i]);
   });
   centres_.ofOtherCells[cell] = CellCentres(m);
 }

@@ -28,6 +28,8 @@ class LayerCheck {
   LayerTrial trial() { return LayerTrial(mesh_, columns_, points_, limits_, centres_); }
   /// A cell beside columns that has changed its shape.
   void measureBeside(Id cell);
+  /// All of them: layers divide the faces between them and columns, which moves their centres a little.
+  void measureBeside();
 
  private:
   LayerReason capFault(Id column);
@@ -40,6 +42,7 @@ class LayerCheck {
   const std::vector<Vec3>& points_;
   LayerLimits limits_;
   LayerCentres centres_;
+  std::vector<Id> beside_;          // cells beside columns
   std::vector<std::uint8_t> seen_;  // #F scratch of facesAround
 };
 
