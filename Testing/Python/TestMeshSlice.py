@@ -204,7 +204,8 @@ class MeshSlice(unittest.TestCase):
             self.assertTrue(cells.IsA("vtkUnstructuredGrid"))
             names = "vtkOriginalCellIds"
             ids = vtk_to_numpy(cells.GetCellData().GetArray(names))
-            np.testing.assert_array_equal(ids, np.sort(vtk_to_numpy(section.GetCellData().GetArray(names))))
+            cut = vtk_to_numpy(section.GetCellData().GetArray(names))  # a bent face may dip through the plane twice
+            np.testing.assert_array_equal(ids, np.unique(cut))
             np.testing.assert_array_equal(vtk_to_numpy(cells.GetCellTypesArray()),
                                           vtk_to_numpy(self.grid.GetCellTypesArray())[ids])
 
