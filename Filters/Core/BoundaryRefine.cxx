@@ -238,7 +238,7 @@ PolyMesh boundaryRefine(PolyMesh mesh, const BoundaryRefineOptions& options, Mon
   planLayers(mesh, columns, demands, heights);
   warnOfAspect(mesh, columns, heights, monitor);
   LayerPoints points(mesh, columns, sight, heights);
-  lowerUntilValid(mesh, columns, points, sight, options, monitor);
+  if (splits) lowerUntilValid(mesh, columns, points, sight, options, monitor);
   monitor.check(0.7, "splitting prisms");
   PolyMesh refined = splitLayers(mesh, columns, points.all());
   if (report) *report = coverage(refined, columns, demands);

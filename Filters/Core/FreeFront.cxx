@@ -36,17 +36,13 @@ class FreeFront {
   void sweep(const Goal& goal) {
     tbb::parallel_for(Id(0), faces_.rows(), [&](Id f) { shapes_[f] = measureFace(place_, faces_[f], true); });
     tbb::parallel_for(Id(0), wall_.size(), [&](Id row) {
-      Vec3 middle = Vec3::Zero(), normal = middle;
-      double weight = 0;
-      for (Id f : wall_.faces[row]) {
-        const FaceMeasures& shape = shapes_[slot_[f - mesh_.internalFaces()]];
-        const double area = shape.normal.norm();
-        middle += area * (shape.centre - place_[row]);
-        weight += area;
-        normal += shape.normal;
-      }
-      if (weight > 0) middle /= weight;
-      next_[row] = goal(row, middle, Vec3(normal.stableNormalized()));
+      const auto shape = [&](Id f) -> const FaceMeasures& {
+        return shapes_[slot_[f - mesh_.internalFaces()]];
+      };
+      const FacesAround around = facesAround(
+          wall_.faces[row], place_[row], [&](Id f) { return shape(f).centre; },
+          [&](Id f) { return shape(f).normal; });
+      next_[row] = goal(row, around.middle, Vec3(around.normal.stableNormalized()));
       for (int a = 0; a < 3; ++a)
         if (mesh_.fixed[wall_.nodes[row]] >> a & 1) next_[row][a] = place_[row][a];
     });
@@ -67,19 +63,17 @@ class FreeFront {
 }  // namespace
 
 std::vector<Vec3> freeFront(const PolyMesh& mesh, const WallSurface& wall, const WayToGeometry& way,
-                            const Monitor& monitor) {
+                            Monitor& monitor) {
+  constexpr double kSweeps = kFlatteningSweeps + kDriftingSweeps;
   FreeFront front(mesh, wall);
-  const auto checkAbort = [&] {
-    if (monitor.aborted()) throw AbortError("Stopped on request.");
-  };
   for (int k = 0; k < kFlatteningSweeps; ++k) {
-    checkAbort();
+    monitor.check(k / kSweeps, "front smoothing");
     front.sweep([&](Id row, const Vec3& middle, const Vec3&) -> Vec3 {
       return front.places()[row] + kStep * middle;
     });
   }
   for (int left = kDriftingSweeps; left > 0; --left) {
-    checkAbort();
+    monitor.check(1 - left / kSweeps, "front smoothing");
     front.sweep([&](Id row, const Vec3& middle, const Vec3& n) -> Vec3 {
       const Vec3 along = front.places()[row] + kStep * (middle - middle.dot(n) * n);
       return along + way(row, along) / left;

@@ -19,6 +19,6 @@ using WayToGeometry = std::function<Vec3(Id row, const Vec3& from)>;
 
 /// #W the place for each wall node. Fixed coordinates stay. Stops soon after an abort (AbortError).
 std::vector<Vec3> freeFront(const PolyMesh& mesh, const WallSurface& wall, const WayToGeometry& way,
-                            const Monitor& monitor);
+                            Monitor& monitor);
 
 }  // namespace pm

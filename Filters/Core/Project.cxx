@@ -81,9 +81,9 @@ class Projector {
 
   // 4.6.2, gradual front drifting: to where the front would go if it were a surface by itself.
   void drift() {
-    monitor_.check(0, "front smoothing");
+    PartMonitor part(monitor_, 0, 0.1);
     const std::vector<Vec3> goal = freeFront(
-        mesh_, wall_, [&](Id row, const Vec3& from) { return wayToGeometry(row, from); }, monitor_);
+        mesh_, wall_, [&](Id row, const Vec3& from) { return wayToGeometry(row, from); }, part);
     for (int left = driftingRounds(); left > 0; --left) {
       monitor_.check(0.1 + 0.3 * (1 - double(left) / driftingRounds()), "projection");
       placeBases();
@@ -125,25 +125,6 @@ class Projector {
       approach(mover_.blocks(nodesAround(stuck)));
     }
     approach(wallBlocks_);
-  }
-
-  /// Mean of the centres of the wall faces around a node, weighted by area (so that hanging nodes on the
-  /// edges do not count), relative to the node; and the outward normal there. False where the faces have no
-  /// area.
-  bool meanAround(Id row, Vec3& mean, Vec3& normal) const {
-    const Vec3& x = mesh_.points[wall_.nodes[row]];
-    mean = normal = Vec3::Zero();
-    double weight = 0;
-    for (Id f : wall_.faces[row]) {
-      const double area = mover_.faceNormal(f).norm();
-      mean += area * (mover_.faceCentre(f) - x);
-      weight += area;
-      normal += mover_.faceNormal(f);
-    }
-    if (!(weight > 0) || !(normal.norm() > 0)) return false;
-    mean /= weight;
-    normal.normalize();
-    return true;
   }
 
   // 4.5.3: where the bases ought to be, below their wall nodes at one smooth height; ideal places are
@@ -217,9 +198,12 @@ class Projector {
 
   void approachNode(Id p, Id row) {
     const Vec3 x = mesh_.points[p];
-    Vec3 mean, n;
     distance_[row] = 0;
-    if (meanAround(row, mean, n)) {
+    const FacesAround around = facesAround(
+        wall_.faces[row], x, [&](Id f) { return mover_.faceCentre(f); },
+        [&](Id f) { return mover_.faceNormal(f); });
+    if (around.haveArea && around.normal.norm() > 0) {
+      const Vec3 mean = around.middle, n = around.normal.normalized();
       const Vec3 step = 0.5 * (mean - mean.dot(n) * n) + pullOfWebs(row);
       if (step.norm() > kSmallStep * wall_.scale[row] &&
           moveWithBase(p, row, x + step + wayToGeometry(row, x + step)))

@@ -20,4 +20,26 @@ struct WallSurface {
 
 WallSurface wallSurface(const PolyMesh& mesh);
 
+/// Faces around a point, weighted by area, so that hanging nodes on their edges do not count.
+struct FacesAround {
+  Vec3 middle = Vec3::Zero();  ///< mean of their centres, relative to the point
+  Vec3 normal = Vec3::Zero();  ///< sum of their area vectors
+  bool haveArea = false;
+};
+/// centre(f) and normal(f) are those of a face.
+template <class Centre, class Normal>
+FacesAround facesAround(Span<Id> faces, const Vec3& at, const Centre& centre, const Normal& normal) {
+  FacesAround around;
+  double weight = 0;
+  for (Id f : faces) {
+    const double area = normal(f).norm();
+    around.middle += area * (centre(f) - at);
+    weight += area;
+    around.normal += normal(f);
+  }
+  around.haveArea = weight > 0;
+  if (around.haveArea) around.middle /= weight;
+  return around;
+}
+
 }  // namespace pm

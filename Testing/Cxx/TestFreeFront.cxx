@@ -6,39 +6,27 @@
 
 #include <cmath>
 
-#include "DummyLayer.h"
-#include "OctreeDecompose.h"
-#include "PaintFront.h"
-#include "TestSurfaces.h"
+#include "TestLayered.h"
 
 namespace {
 
 using namespace pm;
 using namespace pm::testing;
 
-PolyMesh layered(const SurfaceModel& model, double size) {
-  Monitor monitor;
-  OctreeDecomposeOptions o;
-  o.featureSize = size;
-  return dummyLayer(paintFront(decompose(model, o, monitor), model, {}, monitor), {}, monitor);
-}
-
 /// Around a geometry that stands through the floor of the domain.
 PolyMesh layeredOnFloor(const SurfaceModel& model, double size) {
-  Monitor monitor;
   OctreeDecomposeOptions o;
   o.featureSize = size;
   o.useDomain = true;
   o.domain.add(Vec3(-3, -3, 0.5));
   o.domain.add(Vec3(3, 3, 4));
-  PaintFrontOptions outside;
-  outside.region = Region::Outside;
-  return dummyLayer(paintFront(decompose(model, o, monitor), model, outside, monitor), {}, monitor);
+  return layered(model, o, Region::Outside);
 }
 
 std::vector<Vec3> goals(const PolyMesh& mesh, const WallSurface& wall, const SurfaceModel& model) {
+  Monitor monitor;
   return freeFront(
-      mesh, wall, [&](Id, const Vec3& from) { return Vec3(model.closest(from).point - from); }, Monitor());
+      mesh, wall, [&](Id, const Vec3& from) { return Vec3(model.closest(from).point - from); }, monitor);
 }
 
 TEST(FreeFront, LiesOnTheGeometryWithoutFolds) {
@@ -82,11 +70,11 @@ TEST(FreeFront, KeepsFixedCoordinates) {
 TEST(FreeFront, StopsWhenAsked) {
   struct Stop : Monitor {
     bool aborted() const override { return true; }
-  };
+  } stop;
   const auto model = cylinder(32).model();
   const PolyMesh mesh = layered(*model, 0.2);
   const auto stay = [](Id, const Vec3&) { return Vec3(Vec3::Zero()); };
-  EXPECT_THROW(freeFront(mesh, wallSurface(mesh), stay, Stop()), AbortError);
+  EXPECT_THROW(freeFront(mesh, wallSurface(mesh), stay, stop), AbortError);
 }
 
 }  // namespace

@@ -6,23 +6,13 @@
 #include <cmath>
 #include <string>
 
-#include "DummyLayer.h"
-#include "OctreeDecompose.h"
-#include "PaintFront.h"
 #include "Project.h"
-#include "TestSurfaces.h"
+#include "TestLayered.h"
 
 namespace {
 
 using namespace pm;
 using namespace pm::testing;
-
-PolyMesh layered(const SurfaceModel& model, double size) {
-  Monitor monitor;
-  OctreeDecomposeOptions o;
-  o.featureSize = size;
-  return dummyLayer(paintFront(decompose(model, o, monitor), model, {}, monitor), {}, monitor);
-}
 
 PolyMesh projected(const SurfaceModel& model, double size, bool cache = true) {
   Monitor monitor;
@@ -123,12 +113,7 @@ TEST(Project, WebsAreDrawnIntoTheirGaps) {
   for (int k = 0; k < 6; ++k) {
     const auto model = groovedBlock(0.1 + 0.2 * k).model();
     Monitor monitor;
-    OctreeDecomposeOptions o;
-    o.featureSize = 0.4;
-    PaintFrontOptions outside;
-    outside.region = Region::Outside;
-    PolyMesh mesh =
-        dummyLayer(paintFront(decompose(*model, o, monitor), *model, outside, monitor), {}, monitor);
+    PolyMesh mesh = layered(*model, 0.4, Region::Outside);
     DistanceField field(*model, mesh.finestSize);
     project(mesh, field, {}, monitor);
     const MeshMeasures m = measure(mesh);
