@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FeatureSnapper.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -11,8 +13,9 @@ namespace {
 
 constexpr int kRings = 2;           // wall nodes this many edges from a target take part in the smoothing
 constexpr int kDistanceGroups = 4;  // eq 4-31
-// In length scales: what counts as reached, and how near the nodes of a path may come.
-constexpr double kReached = 1e-3;
+// In length scales: what counts as reached, what is not worth a move on from there, and how near the nodes of
+// a path may come.
+constexpr double kReached = 1e-3, kThere = 1e-6;
 constexpr double kCrowded = 0.2;
 constexpr double kFine = 0.9;  // badness below which cells are well enough not to be worth another try
 
@@ -36,8 +39,9 @@ FeatureSnapper::FeatureSnapper(NodeMover& mover, const WallSurface& wall, const 
       forced_(mover, wall) {
   changed_.assign(mesh_.points.size(), 1);
   innerTried_.assign(mesh_.points.size(), 0);
-  smoothTried_.assign(wall.nodes.size(), 0);
-  snapTried_ = forceTried_ = settleTried_ = smoothTried_;
+  relaxTried_.assign(wall.nodes.size(), 0);
+  snapTried_ = forceTried_ = relaxTried_;
+  wentBack_.assign(mesh_.points.size(), 0);
   isBase_.assign(mesh_.points.size(), 0);
   for (Id p : wall.nodes)
     if (mesh_.base[p] != kNone) isBase_[mesh_.base[p]] = 1;
@@ -200,7 +204,7 @@ void FeatureSnapper::snap(bool corners) {
   std::vector<Id> open;
   double farthest = 0;
   for (Id row = 0; row < wall_.size(); ++row)
-    if (role_[row] == role && !reached(row)) {
+    if (role_[row] == role && distance(row) > kThere) {
       open.push_back(row);
       farthest = std::max(farthest, distance(row));
     }
@@ -310,10 +314,10 @@ double FeatureSnapper::deviation(Id row, const Vec3& at, double enough) const {
   return worst;
 }
 
-/// Smoothing along the geometry (4.5.2): in the node's tangent plane, then back to the surface.
-void FeatureSnapper::smoothWallNode(Id row, bool onlyBetter) {
-  const Id p = wall_.nodes[row];
-  const Vec3 from = mesh_.points[p];
+/// Smoothing along the geometry (4.5.2): in the node's tangent plane, then back to the surface. Where it is
+/// when that is not worth a move.
+Vec3 FeatureSnapper::smoothedNode(Id row) const {
+  const Vec3& from = mesh_.points[wall_.nodes[row]];
   Vec3 mean = Vec3::Zero();
   for (Id n : wall_.neighbours[row]) mean += mesh_.points[wall_.nodes[n]];
   mean /= static_cast<double>(wall_.neighbours[row].size());
@@ -321,12 +325,7 @@ void FeatureSnapper::smoothWallNode(Id row, bool onlyBetter) {
   Vec3 step = mean - from;
   step -= n.dot(step) * n;
   const Vec3 to = field_.closest(from + 0.5 * step).point;
-  if ((to - from).norm() < 0.01 * wall_.scale[row]) return;
-  if (onlyBetter) {
-    improveNear(row, to, mover_.badness(p));
-  } else {
-    tryMove(row, to, kSmoothTolerance);
-  }
+  return (to - from).norm() < 0.01 * wall_.scale[row] ? from : to;
 }
 
 /// A node that reached its curve may slide between its neighbours on the path when that helps the cells
@@ -343,16 +342,14 @@ void FeatureSnapper::slideOnCurve(Id row) {
   changed_[p] = pass_;
 }
 
-/// Lower end of a prism edge: below its wall node along the wall's normal at the old height, evened out
-/// (4.5.3).
-void FeatureSnapper::settleBase(Id row, bool onlyBetter) {
-  const Id p = wall_.nodes[row], b = mesh_.base[p];
-  if (b == kNone) return;
-  const Vec3 upright = mesh_.points[p] - height_[row] * mover_.meanNormal(wall_.faces[row]);
+/// Lower end of a prism edge with its wall node at `top`: half the way to below it along the wall's normal at
+/// the old height, evened out (4.5.3). Where it is when that is not worth a move.
+Vec3 FeatureSnapper::settledBase(Id row, const Vec3& top) const {
+  const Id b = mesh_.base[wall_.nodes[row]];
+  const Vec3 upright = top - height_[row] * mover_.meanNormal(wall_.faces[row]);
   const Vec3 ideal = 0.7 * upright + 0.3 * mover_.neighbourMean(b);
-  const Vec3 to = 0.5 * (mesh_.points[b] + ideal);
-  if ((to - mesh_.points[b]).norm() < 0.01 * height_[row]) return;
-  if (onlyBetter ? mover_.improve(b, to) : mover_.drift(b, to, 1) > 0) changed_[b] = pass_;
+  const Vec3 step = 0.5 * (ideal - mesh_.points[b]);
+  return step.norm() < 0.01 * height_[row] ? mesh_.points[b] : Vec3(mesh_.points[b] + step);
 }
 
 /// Volume smoothing (4.5.1) of the points below the columns.
@@ -369,29 +366,65 @@ void FeatureSnapper::smoothInner() {
 
 void FeatureSnapper::relax() {
   ++pass_;
-  forEachRow(active_, [&](Id row) {
-    if (stirred(row, settleTried_)) settleBase(row, false);
-  });
+  std::vector<Id> rows;
+  for (const std::vector<Id>& group : active_)
+    for (Id p : group)
+      if (stirred(wall_.rowOf[p], relaxTried_)) rows.push_back(wall_.rowOf[p]);
+  relaxAll(rows);
   ++pass_;
   forEachRow(active_, [&](Id row) {
-    if (role_[row] == Role::Free && stirred(row, smoothTried_)) smoothWallNode(row, false);
+    const Id p = wall_.nodes[row], b = mesh_.base[p];
+    if (b != kNone && wentBack_[b] && mover_.drift(b, settledBase(row, mesh_.points[p]), 1) > 0)
+      changed_[b] = pass_;
+    if (wentBack_[p]) tryMove(row, smoothedNode(row), kSmoothTolerance);
   });
   smoothInner();
+}
+
+/// All columns at once; notes the points that did not get there.
+void FeatureSnapper::relaxAll(const std::vector<Id>& rows) {
+  std::vector<Id> points(2 * rows.size(), kNone);
+  std::vector<Vec3> targets(points.size(), Vec3::Zero());
+  tbb::parallel_for(std::size_t(0), rows.size(), [&](std::size_t i) {
+    const Id row = rows[i], p = wall_.nodes[row], b = mesh_.base[p];
+    const Vec3 from = mesh_.points[p];
+    const auto add = [&](std::size_t k, Id point, const Vec3& to) {
+      if (to != mesh_.points[point]) points[k] = point, targets[k] = to;
+    };
+    Vec3 to = role_[row] == Role::Free ? smoothedNode(row) : from;
+    if (to != from && !staysNear(row, from, to, kSmoothTolerance * wall_.scale[row])) to = from;
+    add(2 * i, p, to);
+    if (b != kNone) add(2 * i + 1, b, settledBase(row, to));
+  });
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (points[i] != kNone) points[count] = points[i], targets[count++] = targets[i];
+  points.resize(count);
+  const std::vector<double> part = mover_.moveAll(points, targets);
+  std::fill(wentBack_.begin(), wentBack_.end(), 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (part[i] > 0) changed_[points[i]] = pass_;
+    wentBack_[points[i]] = part[i] < 1;
+  }
 }
 
 void FeatureSnapper::polish() {
   ++pass_;
   forEachRow(active_, [&](Id row) {
-    if (mover_.badness(wall_.nodes[row]) < kFine) return;
+    const double badness = mover_.badness(wall_.nodes[row]);
+    if (badness < kFine) return;
     if (role_[row] == Role::Free)
-      smoothWallNode(row, true);
+      improveNear(row, smoothedNode(row), badness);
     else if (role_[row] == Role::Curve)
       slideOnCurve(row);
   });
   ++pass_;
   forEachRow(active_, [&](Id row) {
-    const Id b = mesh_.base[wall_.nodes[row]];
-    if (b != kNone && mover_.badness(b) >= kFine) settleBase(row, true);
+    const Id p = wall_.nodes[row], b = mesh_.base[p];
+    if (b == kNone) return;
+    const double badness = mover_.badness(b);
+    if (badness >= kFine && mover_.improve(b, settledBase(row, mesh_.points[p]), badness))
+      changed_[b] = pass_;
   });
   smoothInner();
 }

@@ -38,7 +38,7 @@ class FeatureSnapper {
   void workAroundAll();
   /// Moves the nodes of curves, or those of corners, towards their targets, nearest first (eq 4-31).
   void snap(bool corners);
-  /// Smooths free wall nodes along the geometry, then the lower ends of their prism edges, then the points
+  /// Smooths free wall nodes along the geometry together with the lower ends of prism edges, then the points
   /// below.
   void relax();
   /// As relax, but only points with a measure close to its limit move, and a move must also improve the worst
@@ -72,9 +72,10 @@ class FeatureSnapper {
   bool canReach(Id row) const;
   bool improveNear(Id row, const Vec3& to, double badness);
   double deviation(Id row, const Vec3& at, double enough) const;
-  void smoothWallNode(Id row, bool onlyBetter);
+  Vec3 smoothedNode(Id row) const;
+  Vec3 settledBase(Id row, const Vec3& top) const;
+  void relaxAll(const std::vector<Id>& rows);
   void slideOnCurve(Id row);
-  void settleBase(Id row, bool onlyBetter);
   std::vector<std::vector<Id>> columnGroups(const std::vector<Id>& rows) const;
   bool stirred(Id row, std::vector<Id>& tried);
   bool stirredBelow(Id point);
@@ -100,8 +101,9 @@ class FeatureSnapper {
   std::vector<Id> before_, after_;  // #W neighbours on the path, kNone at its ends
   Id pass_ = 1;                     // counts sweeps over rows or points
   std::vector<Id> changed_;         // #P pass in which the point moved last
-  std::vector<Id> snapTried_, forceTried_, smoothTried_, settleTried_,
+  std::vector<Id> snapTried_, forceTried_, relaxTried_,
       innerTried_;                       // #W, and #P the last: pass of the last attempt
+  std::vector<char> wentBack_;           // #P in the last relaxAll()
   std::vector<std::vector<Id>> active_;  // groups of wall nodes around targets
   std::vector<std::vector<Id>> inner_;   // groups of points below them
 };

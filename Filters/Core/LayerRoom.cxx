@@ -19,18 +19,20 @@ class RoomMaker {
       : mesh_(mesh), columns_(columns), sight_(sight), wanted_(wanted) {}
 
   void run(const QualityLimits& limits, Monitor& monitor) {
-    const std::vector<Id> ends = lacking();
+    std::vector<Id> ends = lacking();
     if (ends.empty()) return;
-    const std::vector<Id> below = pointsBelow(ends);
-    std::vector<Id> movable = ends;
+    const Csr<Id> faces = pointFaces(mesh_);
+    std::vector<Id> movable = ends, below = pointsBelow(ends, faces);
     movable.insert(movable.end(), below.begin(), below.end());
     NodeMover mover(mesh_, limits, movable, &monitor);
-    const auto edges = mover.colour(ends), inner = mover.colour(below);
-    // Edges that only lean are as upright as they get after one round; for length others must give way, too.
-    const bool anyShort = std::any_of(ends.begin(), ends.end(), [&](Id b) { return isShort(b); });
-    for (int round = 0; round < (anyShort ? kRounds : 1); ++round) {
-      if (round > 0) mover.forEach(inner, [&](Id p) { mover.improve(p, evened(mover, p)); });
-      mover.forEach(edges, [&](Id b) { stretch(mover, b); });
+    mover.forEach(mover.colour(ends), [&](Id b) { stretch(mover, b); });
+    // Edges that only lean are as upright as they get now; for length others must give way, too.
+    for (int round = 1; round < kRounds; ++round) {
+      ends.erase(std::remove_if(ends.begin(), ends.end(), [&](Id b) { return !isShort(b); }), ends.end());
+      if (ends.empty()) return;
+      below = pointsBelow(ends, faces);
+      mover.forEach(mover.colour(below), [&](Id p) { mover.improve(p, evened(mover, p)); });
+      mover.forEach(mover.colour(ends), [&](Id b) { stretch(mover, b); });
     }
   }
 
@@ -54,8 +56,7 @@ class RoomMaker {
     return list;
   }
   /// Points of the faces around the lower ends that are neither on the wall nor lower ends themselves.
-  std::vector<Id> pointsBelow(const std::vector<Id>& lowerEnds) const {
-    const Csr<Id> faces = pointFaces(mesh_);
+  std::vector<Id> pointsBelow(const std::vector<Id>& lowerEnds, const Csr<Id>& faces) const {
     std::vector<Id> below;
     for (Id b : lowerEnds)
       for (Id f : faces[b])

@@ -105,6 +105,12 @@ NodeMover::Relation NodeMover::bestRelation() {
   return {most, -most, most, most, most};
 }
 
+NodeMover::CellState NodeMover::bestCell() {
+  CellState best;
+  best.volume = best.minTet = best.minPyramid = best.determinant = std::numeric_limits<double>::max();
+  return best;
+}
+
 bool NodeMover::holdsWith(Exchange& exchange) const {
   const Id old = exchange.gone.front(), c = mesh_.owner[old];
   if (!region_.isInner(c)) return false;
@@ -130,8 +136,7 @@ bool NodeMover::holdsWith(Exchange& exchange) const {
 }
 
 bool NodeMover::holdsAround(Id p) const {
-  CellState best;
-  best.volume = best.minTet = best.minPyramid = best.determinant = std::numeric_limits<double>::max();
+  const CellState best = bestCell();
   for (Id c : cellsOf(p)) {
     if (cellRefuses(cell(c), best) != Refusal::None) return false;
     if (region_.isRim(c)) continue;

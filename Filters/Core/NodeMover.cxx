@@ -204,8 +204,9 @@ double NodeMover::badness(Id p) const {
   double worst = 0;
   for (Id c : cellsOf(p)) {
     worst = std::max(worst, badnessOfCell(cell(c)));
-    for (Id f : facesOfCell(c)) worst = std::max(worst, badnessOfFace(f, face(f)));
+    for (Id f : facesOfCell(c)) worst = std::max(worst, badnessOfRelation(f, face(f)));
   }
+  for (Id f : facesOf(p)) worst = std::max(worst, badnessOfShape(f, face(f)));
   return worst;
 }
 
@@ -241,15 +242,13 @@ bool NodeMover::isBetter(const Touched& t) const {
     worst = std::max(worst, badness);
     excess += std::max(0.0, badness - 1);
   };
+  for (std::size_t i = 0; i < t.shapes.size(); ++i) {
+    add(badnessOfShape(t.shapes[i], t.oldShapes[i]), before, excessBefore);
+    add(badnessOfShape(t.shapes[i], face(t.shapes[i])), after, excessAfter);
+  }
   for (std::size_t i = 0; i < t.faces.size(); ++i) {
-    const Id f = t.faces[i];
-    FaceState old = face(f);
-    add(badnessOfFace(f, old), after, excessAfter);
-    static_cast<Relation&>(old) = t.oldRelations[i];
-    const auto shape = std::lower_bound(t.shapes.begin(), t.shapes.end(), f);
-    if (shape != t.shapes.end() && *shape == f)
-      static_cast<Shape&>(old) = t.oldShapes[static_cast<std::size_t>(shape - t.shapes.begin())];
-    add(badnessOfFace(f, old), before, excessBefore);
+    add(badnessOfRelation(t.faces[i], t.oldRelations[i]), before, excessBefore);
+    add(badnessOfRelation(t.faces[i], face(t.faces[i])), after, excessAfter);
   }
   for (std::size_t i = 0; i < t.cells.size(); ++i) {
     add(badnessOfCell(t.oldCells[i]), before, excessBefore);
@@ -336,15 +335,18 @@ Refusal NodeMover::attempt(const Id* points, const Vec3* targets, std::size_t co
 }
 
 void NodeMover::keep(const Id* points, const Touched& t) {
-  const auto note = [now = tick(), this](Id c) {
-    const Id slot = region_.cellSlot[c];
-    if (slot < region_.cells) changed_[slot].store(now, std::memory_order_relaxed);
-  };
-  for (Id f : t.faces) {
-    note(mesh_.owner[f]);
-    if (isInternal(f)) note(mesh_.neighbour[f]);
-  }
+  for (Id f : t.faces) noteChange(f, tick());
   if (trial_ != nullptr) trial_->entries_.push_back({{points, points + t.oldPoints.size()}, t});
+}
+
+/// A point of a face's cell has moved.
+void NodeMover::noteChange(Id face, Id tick) {
+  const auto note = [&](Id c) {
+    const Id slot = region_.cellSlot[c];
+    if (slot < region_.cells) changed_[slot].store(tick, std::memory_order_relaxed);
+  };
+  note(mesh_.owner[face]);
+  if (isInternal(face)) note(mesh_.neighbour[face]);
 }
 
 Id NodeMover::lastChange(Id p) const {

@@ -50,6 +50,7 @@ class Projector {
     distance_.assign(wall_.size(), 0.0);
     web_.assign(mesh.boundaryFaces(), 0.0);
     tried_.assign(wall_.size(), 0);
+    led_.assign(wall_.size(), 0);
     baseOffset_.assign(wall_.size(), Vec3::Zero());
     witness_ = baseOffset_;
     placeWitnesses();
@@ -86,12 +87,13 @@ class Projector {
         mesh_, wall_, [&](Id row, const Vec3& from) { return wayToGeometry(row, from); }, part);
     for (int left = driftingRounds(); left > 0; --left) {
       monitor_.check(0.1 + 0.3 * (1 - double(left) / driftingRounds()), "projection");
+      const auto way = [&](Id row) -> Vec3 { return (goal[row] - mesh_.points[wall_.nodes[row]]) / left; };
       placeBases();
+      leadAll([&](Id row) -> Vec3 { return mesh_.points[wall_.nodes[row]] + way(row); });
       mover_.forEach(wallBlocks_, [&](Id p) {
         const Id row = wall_.rowOf[p];
-        const Vec3 way = (goal[row] - mesh_.points[p]) / left;
-        if (moveWithBase(p, row, mesh_.points[p] + way)) return;
-        if (!movePrismEdge(p, way)) movePrismEdge(p, 0.5 * way);
+        if (led_[row] || moveWithBase(p, row, mesh_.points[p] + way(row))) return;
+        if (!movePrismEdge(p, way(row))) movePrismEdge(p, 0.5 * way(row));
         if (left == 1) approachNode(p, row);
       });
     }
@@ -102,7 +104,13 @@ class Projector {
     for (int round = driftingRounds(); round < rounds_; ++round) {
       monitor_.check(0.4 + 0.4 * (round - driftingRounds()) / kSettlingRounds, "front smoothing");
       findWebs();
-      approach(wallBlocks_);
+      placeBases();
+      leadAll([&](Id row) { return nextPlace(row); });
+      mover_.forEach(wallBlocks_, [&](Id p) {
+        const Id row = wall_.rowOf[p];
+        distance_[row] = led_[row] ? 0 : distance_[row];
+        if (!led_[row] && mover_.worthTrying(p, tried_[row])) approachNode(p, row);
+      });
     }
     std::fill(web_.begin(), web_.end(), 0.0);
   }
@@ -156,6 +164,23 @@ class Projector {
     return mover_.move(p, target);
   }
 
+  /// Moves all wall nodes to their targets at once, with their bases; notes which got there. Most do, so that
+  /// few are left to be moved one by one.
+  template <class Target>
+  void leadAll(const Target& target) {
+    const std::size_t n = wall_.nodes.size();
+    std::vector<Id> points(wall_.nodes);
+    for (Id p : wall_.nodes) points.push_back(mesh_.base[p]);
+    std::vector<Vec3> targets(2 * n);
+    tbb::parallel_for(Id(0), wall_.size(), [&](Id row) {
+      const Vec3 to = target(row);
+      targets[row] = to;
+      targets[n + row] = 0.5 * (mesh_.points[points[n + row]] + to + baseOffset_[row]);
+    });
+    const std::vector<double> part = mover_.moveAll(points, targets);
+    for (std::size_t row = 0; row < n; ++row) led_[row] = part[row] == 1;
+  }
+
   bool movePrismEdge(Id p, const Vec3& way) {
     const Id b = mesh_.base[p];
     return mover_.moveTogether({p, b}, {mesh_.points[p] + way, mesh_.points[b] + way});
@@ -196,19 +221,25 @@ class Projector {
     });
   }
 
+  /// A step towards the middle of the faces around, in their tangent plane, and as webs pull.
+  Vec3 stepAlong(Id row) const {
+    const FacesAround around = facesAround(
+        wall_.faces[row], mesh_.points[wall_.nodes[row]], [&](Id f) { return mover_.faceCentre(f); },
+        [&](Id f) { return mover_.faceNormal(f); });
+    if (!around.haveArea || !(around.normal.norm() > 0)) return Vec3::Zero();
+    const Vec3 mean = around.middle, n = around.normal.normalized();
+    return 0.5 * (mean - mean.dot(n) * n) + pullOfWebs(row);
+  }
+
+  Vec3 nextPlace(Id row) const {
+    const Vec3 along = mesh_.points[wall_.nodes[row]] + stepAlong(row);
+    return along + wayToGeometry(row, along);
+  }
+
   void approachNode(Id p, Id row) {
     const Vec3 x = mesh_.points[p];
     distance_[row] = 0;
-    const FacesAround around = facesAround(
-        wall_.faces[row], x, [&](Id f) { return mover_.faceCentre(f); },
-        [&](Id f) { return mover_.faceNormal(f); });
-    if (around.haveArea && around.normal.norm() > 0) {
-      const Vec3 mean = around.middle, n = around.normal.normalized();
-      const Vec3 step = 0.5 * (mean - mean.dot(n) * n) + pullOfWebs(row);
-      if (step.norm() > kSmallStep * wall_.scale[row] &&
-          moveWithBase(p, row, x + step + wayToGeometry(row, x + step)))
-        return;
-    }
+    if (stepAlong(row).norm() > kSmallStep * wall_.scale[row] && moveWithBase(p, row, nextPlace(row))) return;
     const Vec3 way = wayToGeometry(row, x);
     if (moveWithBase(p, row, x + way)) return;
     // The prism is in the way: take its foot along.
@@ -318,6 +349,7 @@ class Projector {
   std::vector<double> web_;       // #boundary faces, of webs: how far their centre is off the geometry
   std::vector<Vec3> baseOffset_;  // #W ideal place of each base from its wall node
   std::vector<Vec3> witness_;     // #W a place in the domain behind each node
+  std::vector<char> led_;         // #W got to its target with the others
   std::vector<Id> tried_;         // #W tick of the last attempt
   std::vector<Id> freeTried_;     // #P
 };

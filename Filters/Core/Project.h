@@ -10,7 +10,7 @@
 namespace pm {
 
 struct ProjectOptions {
-  int rounds = 8;  ///< the last four smooth the front along the geometry, those before lead it there
+  int rounds = 6;  ///< the last four smooth the front along the geometry, those before lead it there
   QualityLimits limits;
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "WallFit.h"
 
+#include <tbb/parallel_for.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -10,9 +12,9 @@
 namespace pm {
 namespace {
 
-// In units of the finest cell: how far a node may leave the geometry, and the distance beyond which a point's
-// error is no chord's but a feature's that no shift of nodes would mend.
-constexpr double kMostShift = 0.045, kMostChord = 0.12, kFar = 0.05;
+// In units of the finest cell: how far a node may leave the geometry, what is not worth a move, and the
+// distance beyond which a point's error is no chord's but a feature's that no shift of nodes would mend.
+constexpr double kMostShift = 0.045, kLeastShift = 0.002, kMostChord = 0.12, kFar = 0.05;
 constexpr int kSearchSweeps = 2;  // a third finds a better place for one node in two hundred
 // Search along the surface: steps in length scales, and the gain that makes a new place worth it.
 constexpr double kSteps[] = {0.5, 0.25, 0.1};
@@ -34,37 +36,29 @@ class WallFitter {
  public:
   WallFitter(NodeMover& mover, const WallSurface& wall, const DistanceField& field)
       : mover_(mover), wall_(wall), field_(field), unit_(mover.mesh().finestSize) {
-    fitTried_.assign(wall.size(), 0);
-    searchTried_ = fitTried_;
+    tried_.assign(wall.size(), 0);
+    found_.assign(wall.size(), 0);
   }
 
-  void fit(Id p) {
-    const Id row = wall_.rowOf[p];
-    if (!mover_.worthTrying(p, fitTried_[row])) return;
-    Vec3 n = mover_.areaVector(wall_.faces[row]);
-    if (!(n.norm() > 0)) return;
-    n.normalize();
-    Around at = around(p);
-    const double before = look(at);
-    double lowest = 0, highest = 0;
-    for (std::size_t i = 0; i < at.count; ++i) {
-      const Vec3 r = at.found[i].point - at.points[i];
-      if (r.norm() / unit_ >= kMostChord) continue;
-      lowest = std::min(lowest, r.dot(n));
-      highest = std::max(highest, r.dot(n));
-    }
-    const double own = (at.found[0].point - at.points[0]).dot(n);
-    const double shift =
-        std::clamp(0.5 * (lowest + highest), own - kMostShift * unit_, own + kMostShift * unit_);
-    if (std::abs(shift) < 0.002 * unit_) return;
-    mover_.moveIf(p, mover_.point(p) + shift * n, [&] { return isBelow(before, p, at); });
+  /// Moves nodes along their normals so that the points around each lie as far before the geometry as behind.
+  void shift(const std::vector<Id>& nodes) {
+    const Ways ways = waysToGeometry();
+    std::vector<Vec3> targets(nodes.size());
+    tbb::parallel_for(std::size_t(0), nodes.size(), [&](std::size_t i) {
+      const Id row = wall_.rowOf[nodes[i]];
+      const Vec3 n = mover_.areaVector(wall_.faces[row]).stableNormalized();
+      const double way = shiftAt(row, n, ways);
+      targets[i] = mover_.point(nodes[i]);
+      if (std::abs(way) >= kLeastShift * unit_) targets[i] += way * n;
+    });
+    mover_.moveAll(nodes, targets);
   }
 
   // Maximum approximation (4.7.5): where a face stays off the geometry, often at an edge that found no path,
   // the node tries places around it on the surface.
   void search(Id p) {
     const Id row = wall_.rowOf[p];
-    if (!mover_.worthTrying(p, searchTried_[row])) return;
+    if (!mover_.worthTrying(p, tried_[row])) return;
     const Vec3 n = mover_.areaVector(wall_.faces[row]);
     Around at = around(p);
     double best = look(at);
@@ -77,12 +71,69 @@ class WallFitter {
             mover_.point(p) + step * wall_.scale[row] * (std::cos(angle) * u + std::sin(angle) * v);
         if (!mover_.moveIf(p, field_.closest(to).point, [&] { return isBelow(kGain * best, p, at); }))
           continue;
+        found_[row] = 1;
         at = around(p);
         best = look(at);
       }
   }
 
+  /// Of these nodes, those that have found a better place since the last call, and those beside one.
+  std::vector<Id> unsettled(const std::vector<Id>& nodes) {
+    std::vector<Id> left;
+    for (Id p : nodes) {
+      const Id row = wall_.rowOf[p];
+      const Span<Id> beside = wall_.neighbours[row];
+      if (found_[row] || std::any_of(beside.begin(), beside.end(), [&](Id n) { return found_[n] != 0; }))
+        left.push_back(p);
+    }
+    std::fill(found_.begin(), found_.end(), 0);
+    return left;
+  }
+
  private:
+  /// From the representative points of the wall to the geometry.
+  struct Ways {
+    std::vector<Vec3> node, edge, face;  // #W, #neighbours.values, #boundary faces
+  };
+
+  Ways waysToGeometry() const {
+    const PolyMesh& mesh = mover_.mesh();
+    const Csr<Id>& beside = wall_.neighbours;
+    Ways ways{std::vector<Vec3>(wall_.size()), std::vector<Vec3>(beside.values.size()),
+              std::vector<Vec3>(mesh.boundaryFaces())};
+    const auto way = [&](const Vec3& from) -> Vec3 { return field_.closest(from).point - from; };
+    tbb::parallel_for(Id(0), wall_.size(), [&](Id row) {
+      const Vec3& x = mover_.point(wall_.nodes[row]);
+      ways.node[row] = way(x);
+      for (Id k = beside.offsets[row]; k < beside.offsets[row + 1]; ++k) {
+        const Id other = beside.values[k];
+        if (other < row) continue;
+        const Span<Id> back = beside[other];
+        const auto twin = std::lower_bound(back.begin(), back.end(), row) - back.begin();
+        ways.edge[k] = way(0.5 * (x + mover_.point(wall_.nodes[other])));
+        ways.edge[static_cast<std::size_t>(beside.offsets[other] + twin)] = ways.edge[k];
+      }
+    });
+    tbb::parallel_for(Id(0), mesh.boundaryFaces(), [&](Id b) {
+      if (mesh.isWallPatch(mesh.patch[b])) ways.face[b] = way(mover_.faceCentre(mesh.internalFaces() + b));
+    });
+    return ways;
+  }
+
+  double shiftAt(Id row, const Vec3& n, const Ways& ways) const {
+    double lowest = 0, highest = 0;
+    const auto add = [&](const Vec3& way) {
+      if (way.norm() / unit_ >= kMostChord) return;
+      lowest = std::min(lowest, way.dot(n));
+      highest = std::max(highest, way.dot(n));
+    };
+    add(ways.node[row]);
+    for (Id k = wall_.neighbours.offsets[row]; k < wall_.neighbours.offsets[row + 1]; ++k) add(ways.edge[k]);
+    for (Id f : wall_.faces[row]) add(ways.face[f - mover_.mesh().internalFaces()]);
+    const double own = ways.node[row].dot(n);
+    return std::clamp(0.5 * (lowest + highest), own - kMostShift * unit_, own + kMostShift * unit_);
+  }
+
   Around around(Id p) const {
     const Id row = wall_.rowOf[p];
     const Vec3& x = mover_.point(p);
@@ -135,7 +186,8 @@ class WallFitter {
   const WallSurface& wall_;
   const DistanceField& field_;
   const double unit_;
-  std::vector<Id> fitTried_, searchTried_;  // #W tick of the last attempt
+  std::vector<Id> tried_;    // #W tick of the last search
+  std::vector<char> found_;  // #W better places; see unsettled()
 };
 
 }  // namespace
@@ -147,13 +199,12 @@ void fitWall(NodeMover& mover, const WallSurface& wall, const DistanceField& fie
     if (roles[row] != FitRole::Keep) free.push_back(wall.nodes[row]);
     if (roles[row] == FitRole::Search) searching.push_back(wall.nodes[row]);
   }
-  const MoveBlocks freeGroups = mover.blocks(free), searchGroups = mover.blocks(searching);
   WallFitter fitter(mover, wall, field);
-  const auto shift = [&] { mover.forEach(freeGroups, [&](Id p) { fitter.fit(p); }); };
-  shift();
+  fitter.shift(free);
   for (int sweep = 0; sweep < kSearchSweeps; ++sweep) {
-    mover.forEach(searchGroups, [&](Id p) { fitter.search(p); });
-    shift();
+    mover.forEach(mover.blocks(searching), [&](Id p) { fitter.search(p); });
+    searching = fitter.unsettled(searching);
+    fitter.shift(free);
   }
 }
 

@@ -22,9 +22,9 @@ enum class FitRole : std::uint8_t {
   Keep,    ///< stay: it lies on a feature
 };
 
-/// roles: #W, of the rows of `wall`. All but the kept nodes shift by at most 0.045 of the finest cell; those
-/// near features also search where that leaves a face off the geometry. A move is kept only if it is valid
-/// and the faces' representative points get nearer to the geometry.
+/// roles: #W, of the rows of `wall`. All but the kept nodes shift, together, to at most 0.045 of the finest
+/// cell from the geometry; those near features also search where that leaves a face off the geometry, and
+/// stay unless the faces' representative points get nearer to it. The mesh stays valid.
 void fitWall(NodeMover& mover, const WallSurface& wall, const DistanceField& field,
              const std::vector<FitRole>& roles);
 

@@ -7,12 +7,13 @@ import unittest
 import numpy as np
 from fluent_file import FluentFile, cell_volumes
 from support import Messages, arrays, box, chain, pm, strings
-from vtkmodules.vtkCommonDataModel import VTK_CONVEX_POINT_SET, VTK_HEXAHEDRON, VTK_POLYHEDRON, VTK_WEDGE, vtkUnstructuredGrid
+from vtkmodules.vtkCommonDataModel import (VTK_CONVEX_POINT_SET, VTK_HEXAHEDRON, VTK_POLYHEDRON, VTK_PYRAMID, VTK_WEDGE,
+                                           vtkUnstructuredGrid)
 from vtkmodules.vtkCommonTransforms import vtkTransform
 from vtkmodules.vtkFiltersGeneral import vtkTransformPolyDataFilter
 from vtkmodules.vtkIOGeometry import vtkFLUENTReader
 
-FLUENT_TYPE = {VTK_HEXAHEDRON: 4, VTK_WEDGE: 6, VTK_POLYHEDRON: 7}
+FLUENT_TYPE = {VTK_HEXAHEDRON: 4, VTK_WEDGE: 6, VTK_PYRAMID: 5, VTK_POLYHEDRON: 7}
 
 
 def pipe_junction():
