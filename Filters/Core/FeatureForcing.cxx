@@ -14,9 +14,11 @@ Span<Id> spanOf(const std::vector<Id>& ids) { return {ids.data(), ids.data() + i
 }  // namespace
 
 void FeatureSnapper::force() {
-  std::vector<Id> rows;
+  // Corners first: no other place would do for them, and no other node.
+  std::vector<Id> all = missed(), rows;
+  std::stable_partition(all.begin(), all.end(), [&](Id row) { return role_[row] == Role::Corner; });
   Csr<Id> points;
-  for (Id row : missed()) {
+  for (Id row : all) {
     if (mesh_.base[wall_.nodes[row]] == kNone) continue;
     rows.push_back(row);
     points.push(forced_.points(row));
