@@ -49,7 +49,7 @@ class BridgeBuilder {
         wall_(site.wall),
         table_(site.graph),
         facesOfCell_(cellFaces(mesh)),
-        cellsOfPoint_(pointCells(mesh)) {}
+        cellsOfPoint_(pointCells(mesh, facesOfCell_)) {}
 
   const Csr<Id>& facesOfCell() const { return facesOfCell_; }
   std::vector<Gap> findGaps() const;

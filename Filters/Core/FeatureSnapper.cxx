@@ -104,17 +104,16 @@ void FeatureSnapper::workAround(std::vector<Id> rows) {
     ring.swap(next);
   }
   std::sort(rows.begin(), rows.end());
-  active_ = columnGroups(rows);
-  std::vector<Id> below;
+  active_ = rows;
+  inner_.clear();
   for (Id row : rows) {
     const Id b = mesh_.base[wall_.nodes[row]];
     if (b == kNone) continue;
     for (Id f : mover_.facesOf(b))
       for (Id p : mesh_.faces[f])
-        if (wall_.rowOf[p] == kNone && !isBase_[p]) below.push_back(p);
+        if (wall_.rowOf[p] == kNone && !isBase_[p]) inner_.push_back(p);
   }
-  sortUnique(below);
-  inner_ = mover_.colour(below);
+  sortUnique(inner_);
 }
 
 /// Groups of wall nodes whose columns may move in parallel.
@@ -355,8 +354,10 @@ Vec3 FeatureSnapper::settledBase(Id row, const Vec3& top) const {
 /// Volume smoothing (4.5.1) of the points below the columns.
 void FeatureSnapper::smoothInner() {
   ++pass_;
-  mover_.forEach(inner_, [&](Id p) {
-    if (!stirredBelow(p)) return;
+  std::vector<Id> poor;
+  for (Id p : inner_)
+    if (stirredBelow(p) && mover_.badness(p) >= kFine) poor.push_back(p);
+  mover_.forEach(mover_.colour(poor), [&](Id p) {
     const double badness = mover_.badness(p);
     if (badness < kFine) return;
     const Vec3 to = 0.5 * (mesh_.points[p] + mover_.neighbourMean(p));
@@ -367,12 +368,16 @@ void FeatureSnapper::smoothInner() {
 void FeatureSnapper::relax() {
   ++pass_;
   std::vector<Id> rows;
-  for (const std::vector<Id>& group : active_)
-    for (Id p : group)
-      if (stirred(wall_.rowOf[p], relaxTried_)) rows.push_back(wall_.rowOf[p]);
+  for (Id row : active_)
+    if (stirred(row, relaxTried_)) rows.push_back(row);
   relaxAll(rows);
   ++pass_;
-  forEachRow(active_, [&](Id row) {
+  const auto isBack = [&](Id row) {
+    const Id p = wall_.nodes[row], b = mesh_.base[p];
+    return wentBack_[p] || (b != kNone && wentBack_[b]);
+  };
+  rows.erase(std::remove_if(rows.begin(), rows.end(), [&](Id row) { return !isBack(row); }), rows.end());
+  forEachRow(columnGroups(rows), [&](Id row) {
     const Id p = wall_.nodes[row], b = mesh_.base[p];
     if (b != kNone && wentBack_[b] && mover_.drift(b, settledBase(row, mesh_.points[p]), 1) > 0)
       changed_[b] = pass_;
@@ -409,8 +414,9 @@ void FeatureSnapper::relaxAll(const std::vector<Id>& rows) {
 }
 
 void FeatureSnapper::polish() {
+  const auto columns = columnGroups(active_);
   ++pass_;
-  forEachRow(active_, [&](Id row) {
+  forEachRow(columns, [&](Id row) {
     const double badness = mover_.badness(wall_.nodes[row]);
     if (badness < kFine) return;
     if (role_[row] == Role::Free)
@@ -419,7 +425,7 @@ void FeatureSnapper::polish() {
       slideOnCurve(row);
   });
   ++pass_;
-  forEachRow(active_, [&](Id row) {
+  forEachRow(columns, [&](Id row) {
     const Id p = wall_.nodes[row], b = mesh_.base[p];
     if (b == kNone) return;
     const double badness = mover_.badness(b);

@@ -104,8 +104,8 @@ class FeatureSnapper {
   std::vector<Id> snapTried_, forceTried_, relaxTried_,
       innerTried_;                       // #W, and #P the last: pass of the last attempt
   std::vector<char> wentBack_;           // #P in the last relaxAll()
-  std::vector<std::vector<Id>> active_;  // groups of wall nodes around targets
-  std::vector<std::vector<Id>> inner_;   // groups of points below them
+  std::vector<Id> active_;               // rows around targets
+  std::vector<Id> inner_;                // points below them
 };
 
 }  // namespace pm

@@ -48,12 +48,24 @@ Csr<Id> collectRows(Id count, const ForEachPair& forEachPair) {
 /// faces in them stay.
 template <class ForEachPair>
 Csr<Id> withBoundary(const Csr<Id>& rows, Id internalFaces, const ForEachPair& forEachPair) {
-  return collectRows(rows.rows(), [&](const auto& body) {
-    for (Id i = 0; i < rows.rows(); ++i)
-      for (Id f : rows[i])
-        if (f < internalFaces) body(i, f);
-    forEachPair(body);
+  const Csr<Id> boundary = collectRows(rows.rows(), forEachPair);
+  const auto internalEnd = [&](Id i) { return std::lower_bound(rows[i].begin(), rows[i].end(), internalFaces); };
+  Csr<Id> all;
+  all.offsets.resize(rows.offsets.size());
+  const tbb::blocked_range<Id> every(0, rows.rows(), 4096);
+  tbb::parallel_for(every, [&](const auto& range) {
+    for (Id i = range.begin(); i < range.end(); ++i)
+      all.offsets[i + 1] = static_cast<Id>(internalEnd(i) - rows[i].begin()) + static_cast<Id>(boundary[i].size());
   });
+  std::partial_sum(all.offsets.begin(), all.offsets.end(), all.offsets.begin());
+  all.values.resize(all.offsets.back());
+  tbb::parallel_for(every, [&](const auto& range) {
+    for (Id i = range.begin(); i < range.end(); ++i) {
+      const auto next = std::copy(rows[i].begin(), internalEnd(i), all.values.begin() + all.offsets[i]);
+      std::copy(boundary[i].begin(), boundary[i].end(), next);
+    }
+  });
+  return all;
 }
 
 }  // namespace

@@ -146,8 +146,7 @@ Csr<Id> cellFaces(const PolyMesh& mesh) {
   return rows;
 }
 
-Csr<Id> pointCells(const PolyMesh& mesh) {
-  const Csr<Id> facesOfCell = cellFaces(mesh);
+Csr<Id> pointCells(const PolyMesh& mesh, const Csr<Id>& facesOfCell) {
   const auto forEachPointOnce = [&](const auto& body) {
     std::vector<Id> seen(mesh.points.size(), kNone);
     for (Id c = 0; c < mesh.cellCount; ++c) {

@@ -52,8 +52,8 @@ void canonicalise(PolyMesh& mesh);
 
 /// Faces of each cell, ascending.
 Csr<Id> cellFaces(const PolyMesh& mesh);
-/// Cells around each point / faces around each point, ascending.
-Csr<Id> pointCells(const PolyMesh& mesh);
+/// Cells around each point, given cellFaces() / faces around each point, ascending.
+Csr<Id> pointCells(const PolyMesh& mesh, const Csr<Id>& facesOfCell);
 Csr<Id> pointFaces(const PolyMesh& mesh);
 
 /// Empty when the invariants hold, else one sentence naming the first that does not: ids in range, owner <

@@ -36,31 +36,32 @@ void joinFaces(const PolyMesh& mesh, const std::vector<Id>& wallFaces, WallSurfa
     for (Id p : mesh.faces[f]) wall.faces.values[next[wall.rowOf[p]]++] = f;
 }
 
-/// Every edge twice at both its ends (once from each of its faces), then sorted and thinned.
-void joinNodes(const PolyMesh& mesh, const std::vector<Id>& wallFaces, WallSurface& wall) {
-  std::vector<Id> offsets(wall.nodes.size() + 1, 0);
-  for (Id f : wallFaces)
-    for (Id p : mesh.faces[f]) offsets[wall.rowOf[p] + 1] += 2;
-  sumUp(offsets);
-  std::vector<Id> values(offsets.back());
-  std::vector<Id> next(offsets.begin(), offsets.end() - 1);
-  for (Id f : wallFaces) {
-    const Span<Id> row = mesh.faces[f];
-    for (std::size_t k = 0; k < row.size(); ++k) {
-      const Id a = wall.rowOf[row[k]], b = wall.rowOf[row[(k + 1) % row.size()]];
-      values[next[a]++] = b;
-      values[next[b]++] = a;
-    }
-  }
-  wall.neighbours.clear();
-  wall.neighbours.offsets.reserve(offsets.size());
-  wall.neighbours.values.reserve(values.size() / 2);
-  for (Id i = 0; i < wall.size(); ++i) {
-    const auto first = values.begin() + offsets[i], last = values.begin() + offsets[i + 1];
-    std::sort(first, last);
-    wall.neighbours.values.insert(wall.neighbours.values.end(), first, std::unique(first, last));
-    wall.neighbours.offsets.push_back(static_cast<Id>(wall.neighbours.values.size()));
-  }
+/// The rows before and after a node on the faces around it.
+void joinNodes(const PolyMesh& mesh, WallSurface& wall) {
+  const auto forEachRow = [&](const auto& body) {
+    tbb::parallel_for(tbb::blocked_range<Id>(0, wall.size(), 1024), [&](const auto& range) {
+      std::vector<Id> beside;
+      for (Id i = range.begin(); i != range.end(); ++i) {
+        beside.clear();
+        for (Id f : wall.faces[i]) {
+          const Span<Id> row = mesh.faces[f];
+          const std::size_t k = std::find(row.begin(), row.end(), wall.nodes[i]) - row.begin(), n = row.size();
+          beside.push_back(wall.rowOf[row[(k + 1) % n]]);
+          beside.push_back(wall.rowOf[row[(k + n - 1) % n]]);
+        }
+        sortUnique(beside);
+        body(i, beside);
+      }
+    });
+  };
+  Csr<Id>& rows = wall.neighbours;
+  rows.offsets.assign(wall.nodes.size() + 1, 0);
+  forEachRow([&](Id i, const auto& beside) { rows.offsets[i + 1] = static_cast<Id>(beside.size()); });
+  sumUp(rows.offsets);
+  rows.values.resize(rows.offsets.back());
+  forEachRow([&](Id i, const auto& beside) {
+    std::copy(beside.begin(), beside.end(), rows.values.begin() + rows.offsets[i]);
+  });
 }
 
 void measureScales(const PolyMesh& mesh, WallSurface& wall) {
@@ -93,7 +94,7 @@ WallSurface wallSurface(const PolyMesh& mesh) {
     if (mesh.isWallPatch(mesh.patch[b])) wallFaces.push_back(mesh.internalFaces() + b);
   numberNodes(mesh, wallFaces, wall);
   joinFaces(mesh, wallFaces, wall);
-  joinNodes(mesh, wallFaces, wall);
+  joinNodes(mesh, wall);
   measureScales(mesh, wall);
   return wall;
 }

@@ -229,7 +229,7 @@ TEST(MeshQuality, FarOriginCostsFacesNoDigits) {
 
 TEST(MeshQuality, CellPointsAreTheCorners) {
   const PolyMesh mesh = roomWithBlock();
-  const Csr<Id> points = cellPoints(mesh), cells = pointCells(mesh);
+  const Csr<Id> points = cellPoints(mesh), cells = pointCells(mesh, cellFaces(mesh));
   std::size_t total = 0;
   for (Id c = 0; c < mesh.cellCount; ++c) {
     EXPECT_EQ(points[c].size(), 8u);

@@ -128,7 +128,7 @@ TEST(PolyMesh, AdjacencyAgreesWithTheFaces) {
       if (f < mesh.internalFaces()) cells[p].insert(mesh.neighbour[f]);
     }
   }
-  const Csr<Id> pc = pointCells(mesh), pf = pointFaces(mesh), cf = cellFaces(mesh);
+  const Csr<Id> pc = pointCells(mesh, cellFaces(mesh)), pf = pointFaces(mesh), cf = cellFaces(mesh);
   const auto same = [](const Csr<Id>& rows, const std::vector<std::set<Id>>& sets) {
     ASSERT_EQ(rows.rows(), static_cast<Id>(sets.size()));
     for (Id i = 0; i < rows.rows(); ++i) {

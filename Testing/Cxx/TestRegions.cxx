@@ -188,7 +188,7 @@ std::vector<double> zoneVolumes(const PolyMesh& mesh) {
 
 void expectZonesApart(const PolyMesh& mesh) {
   EXPECT_EQ(checkTopology(mesh), "");
-  const Csr<Id> cellsOf = pointCells(mesh);
+  const Csr<Id> cellsOf = pointCells(mesh, cellFaces(mesh));
   Id shared = 0;
   for (Id p = 0; p < cellsOf.rows(); ++p)
     for (Id c : cellsOf[p]) shared += mesh.zone[c] != mesh.zone[cellsOf[p][0]];
