@@ -316,25 +316,36 @@ std::vector<Bridge> independent(std::vector<std::optional<Bridge>>& bridges, Id 
 
 }  // namespace
 
-std::vector<Id> bridgeGaps(PolyMesh& mesh, const BridgeSite& site) {
+BridgesBuilt bridgeGaps(PolyMesh& mesh, const BridgeSite& site, std::set<GapKey>& hopeless) {
   const BridgeBuilder builder(mesh, site);
-  const std::vector<Gap> gaps = builder.findGaps();
+  const auto key = [&](const Gap& gap) {
+    return GapKey{gap.curve, site.wall.nodes[gap.from], site.wall.nodes[gap.to]};
+  };
+  std::vector<Gap> gaps = builder.findGaps();
+  gaps.erase(std::remove_if(gaps.begin(), gaps.end(), [&](const Gap& g) { return hopeless.count(key(g)); }),
+             gaps.end());
   std::vector<std::optional<Bridge>> bridges(gaps.size());
   tbb::parallel_for(std::size_t(0), gaps.size(), [&](std::size_t i) {
     tbb::this_task_arena::isolate([&] { bridges[i] = builder.build(gaps[i]); });
   });
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < gaps.size(); ++i)
+    if (bridges[i])
+      ++found;
+    else
+      hopeless.insert(key(gaps[i]));
   const std::vector<Bridge> chosen = independent(bridges, mesh.cellCount);
   std::vector<WallPath> paths;
   for (const Bridge& bridge : chosen) paths.push_back(bridge.path);
   std::size_t next = mesh.points.size();
   splitColumns(mesh, builder.facesOfCell(), paths);
-  std::vector<Id> curves;
+  BridgesBuilt built{{}, chosen.size() < found};
   for (const Bridge& bridge : chosen) {
     for (const auto& [p, place] : bridge.moved) mesh.points[p] = place;
     for (const Vec3& place : bridge.added) mesh.points[next++] = place;
-    curves.insert(curves.end(), bridge.added.size() / 2, bridge.curve);
+    built.curves.insert(built.curves.end(), bridge.added.size() / 2, bridge.curve);
   }
-  return curves;
+  return built;
 }
 
 }  // namespace pm

@@ -15,7 +15,9 @@
 // threads.
 #pragma once
 
+#include <array>
 #include <functional>
+#include <set>
 
 #include "ColumnSplit.h"
 #include "DistanceField.h"
@@ -35,7 +37,14 @@ struct BridgeSite {
   std::function<bool(const Vec3& from, const Vec3& to)> sees;
 };
 
-/// Builds what bridges it can and returns, for each new wall node in ascending order, the curve it lies on.
-std::vector<Id> bridgeGaps(PolyMesh& mesh, const BridgeSite& site);
+/// A gap as long as the mesh keeps its points: the curve, and those it lies between.
+using GapKey = std::array<Id, 3>;
+
+struct BridgesBuilt {
+  std::vector<Id> curves;  ///< of each new wall node in ascending order, the curve it lies on
+  bool more = false;       ///< others found a place, but beside one that was built
+};
+/// Builds what bridges it can. hopeless: gaps that need not be tried; receives those where none holds.
+BridgesBuilt bridgeGaps(PolyMesh& mesh, const BridgeSite& site, std::set<GapKey>& hopeless);
 
 }  // namespace pm

@@ -405,7 +405,8 @@ void FeatureSnapper::relaxAll(const std::vector<Id>& rows) {
   for (std::size_t i = 0; i < points.size(); ++i)
     if (points[i] != kNone) points[count] = points[i], targets[count++] = targets[i];
   points.resize(count);
-  const std::vector<double> part = mover_.moveAll(points, targets);
+  targets.resize(count);
+  const std::vector<float> part = mover_.moveAll(points, std::move(targets));
   std::fill(wentBack_.begin(), wentBack_.end(), 0);
   for (std::size_t i = 0; i < count; ++i) {
     if (part[i] > 0) changed_[points[i]] = pass_;

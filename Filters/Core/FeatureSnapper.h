@@ -102,10 +102,10 @@ class FeatureSnapper {
   Id pass_ = 1;                     // counts sweeps over rows or points
   std::vector<Id> changed_;         // #P pass in which the point moved last
   std::vector<Id> snapTried_, forceTried_, relaxTried_,
-      innerTried_;                       // #W, and #P the last: pass of the last attempt
-  std::vector<char> wentBack_;           // #P in the last relaxAll()
-  std::vector<Id> active_;               // rows around targets
-  std::vector<Id> inner_;                // points below them
+      innerTried_;              // #W, and #P the last: pass of the last attempt
+  std::vector<char> wentBack_;  // #P in the last relaxAll()
+  std::vector<Id> active_;      // rows around targets
+  std::vector<Id> inner_;       // points below them
 };
 
 }  // namespace pm

@@ -9,176 +9,169 @@
 #include <tbb/parallel_for.h>
 
 #include <atomic>
-#include <numeric>
 #include <unordered_map>
 
-#include "MoverMeasures.h"
 #include "NodeMover.h"
 
 namespace pm {
 namespace {
 
-/// Of its way, what a point keeps when it goes back.
-double partBehind(double part) { return part == 1 ? 0.5 : 0.0; }
+using Ids = tbb::concurrent_vector<Id>;  // in no order: nothing may depend on it
 
-/// What is to be measured, and then what was found to break a limit; written by any thread.
-class Marks {
+/// What is to be measured, each once, and why; noted by any thread.
+class Noted {
  public:
-  explicit Marks(Id slots) : marks_(slots) {}
-  void add(Id slot) { marks_[slot].store(kToMeasure, std::memory_order_relaxed); }
-  bool has(Id slot) const { return marks_[slot].load(std::memory_order_relaxed) == kToMeasure; }
-  /// Measures what is marked, and keeps the mark of what is refused.
-  template <class Measure>
-  void visit(Id slot, const Measure& measure) {
-    if (has(slot) && measure() == Refusal::None) marks_[slot].store(0, std::memory_order_relaxed);
+  explicit Noted(Id slots) : why_(slots) {}
+  /// True for the first who notes it for this reason, a bit.
+  bool add(Id slot, Id id, std::uint8_t reason) {
+    if (has(slot, reason)) return false;
+    const std::uint8_t before = why_[slot].fetch_or(reason, std::memory_order_relaxed);
+    if (before == 0) ids_.push_back(id);
+    return (before & reason) == 0;
   }
-  /// Takes the mark away.
-  bool take(Id slot) {
-    const bool marked = has(slot);
-    if (marked) marks_[slot].store(0, std::memory_order_relaxed);
-    return marked;
+  bool has(Id slot, std::uint8_t reason) const {
+    return (why_[slot].load(std::memory_order_relaxed) & reason) != 0;
+  }
+  const Ids& ids() const { return ids_; }
+  template <class SlotOf>
+  void clear(const SlotOf& slotOf) {
+    for (Id id : ids_) why_[slotOf(id)].store(0, std::memory_order_relaxed);
+    ids_.clear();
   }
 
  private:
-  static constexpr std::uint8_t kToMeasure = 1;
-  std::vector<std::atomic<std::uint8_t>> marks_;
+  std::vector<std::atomic<std::uint8_t>> why_;
+  Ids ids_;
 };
+
+// A face has a point that moved; a cell has, and so the cell's faces lie otherwise between their cells.
+constexpr std::uint8_t kShape = 1, kCell = 2;
 
 }  // namespace
 
 class NodeMover::MoveOfAll {
  public:
-  MoveOfAll(NodeMover& mover, const std::vector<Id>& points, const std::vector<Vec3>& targets)
+  MoveOfAll(NodeMover& mover, const std::vector<Id>& points, std::vector<Vec3> targets)
       : mover_(mover),
         mesh_(mover.mesh_),
         region_(mover.region_),
         points_(points),
-        targets_(targets),
-        part_(points.size(), 1.0),
+        start_(std::move(targets)),
+        part_(points.size(), 1),
         indexOf_(region_.points, kNone),
-        shapes_(region_.faces),
-        relations_(region_.faces),
+        faces_(region_.faces),
         cells_(region_.cells) {
-    start_.reserve(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      start_.push_back(mesh_.points[points[i]]);
-      if (mover.isMovable(points[i]))
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (mover.isMovable(points[i]) && indexOf_[mover.slot(points[i])] == kNone)
         indexOf_[mover.slot(points[i])] = static_cast<Id>(i);
       else
         part_[i] = 0;
-    }
-    noteOutside();
   }
 
-  std::vector<double> run() {
-    std::vector<Id> going(points_.size());
-    std::iota(going.begin(), going.end(), 0);
-    while (!going.empty()) {
-      forEach(static_cast<Id>(going.size()), [&](Id k) { place(going[k]); });
-      forEach(static_cast<Id>(going.size()), [&](Id k) { mark(points_[going[k]]); });
-      measure();
-      going = refused();
-      for (Id i : going) part_[i] = partBehind(part_[i]);
+  std::vector<float> run() {
+    std::vector<Id> going;
+    for (std::size_t i = 0; i < points_.size(); ++i)
+      if (part_[i] > 0) going.push_back(static_cast<Id>(i));
+    forEach(going, [&](Id i) { goForth(i); });
+    forEach(going, [&](Id i) { touch(points_[i]); });
+    noteOutside();
+    while (!(going = refused()).empty()) {
+      forEach(going, [&](Id i) { goBack(i); });
+      forEach(going, [&](Id i) { touch(points_[i]); });
     }
     ++mover_.tick_;
-    forEach(static_cast<Id>(points_.size()), [&](Id i) {
-      if (part_[i] > 0) noteChange(points_[i]);
-    });
+    for (std::size_t i = 0; i < points_.size(); ++i)
+      if (part_[i] > 0) going.push_back(points_[i]);
+    forEach(going, [&](Id p) { noteChange(p); });
     return std::move(part_);
   }
 
  private:
   /// In blocks, as only this thread may ask whether to stop (AbortError: the mesh is given up then).
-  template <class Body>
-  void forEach(Id count, const Body& body) {
-    constexpr Id kBlock = 1 << 18, kGrain = 512;
-    for (Id first = 0; first < count; first += std::min(kBlock, count - first)) {
+  template <class List, class Body>
+  void forEach(const List& list, const Body& body) const {
+    constexpr std::size_t kBlock = 1 << 18, kGrain = 256;
+    for (std::size_t first = 0; first < list.size(); first += kBlock) {
       if (mover_.monitor_ && mover_.monitor_->aborted()) throw AbortError("Stopped on request.");
-      const tbb::blocked_range<Id> block(first, first + std::min(kBlock, count - first), kGrain);
+      const tbb::blocked_range<std::size_t> block(first, std::min(first + kBlock, list.size()), kGrain);
       tbb::parallel_for(block, [&](const auto& range) {
-        for (Id i = range.begin(); i < range.end(); ++i) body(i);
+        for (std::size_t i = range.begin(); i < range.end(); ++i) body(list[i]);
       });
     }
   }
-  /// Faces that are measured, and cells of movable points; body(id, slot).
-  template <class Body>
-  void forEachFace(const Body& body) {
-    forEach(mesh_.faceCount(), [&](Id f) {
-      if (region_.faceSlot[f] != kNone) body(f, region_.faceSlot[f]);
-    });
+
+  /// To its target, but for fixed coordinates; what is kept of it from now on is where it started.
+  void goForth(Id i) {
+    Vec3& point = mesh_.points[points_[i]];
+    for (int a = 0; a < 3; ++a)
+      if (mesh_.fixed[points_[i]] >> a & 1) start_[i][a] = point[a];
+    std::swap(point, start_[i]);
   }
-  template <class Body>
-  void forEachCell(const Body& body) {
-    forEach(mesh_.cellCount, [&](Id c) {
-      if (region_.isInner(c)) body(c, region_.cellSlot[c]);
-    });
+  /// From the end of its way to the middle, from there to its start.
+  void goBack(Id i) {
+    Vec3& point = mesh_.points[points_[i]];
+    part_[i] = part_[i] == 1 ? 0.5f : 0.0f;
+    point = part_[i] > 0 ? Vec3(start_[i] + 0.5 * (point - start_[i])) : start_[i];
   }
 
+  void touch(Id p) {
+    for (Id f : mover_.facesOf(p)) faces_.add(region_.faceSlot[f], f, kShape);
+    for (Id c : mover_.cellsOf(p)) {
+      if (!cells_.add(region_.cellSlot[c], c, kCell)) continue;
+      for (Id f : mover_.facesOfCell(c)) faces_.add(region_.faceSlot[f], f, kCell);
+    }
+  }
+
+  /// What is outside a limit before the moves: nothing is measured anew yet.
   void noteOutside() {
-    tbb::concurrent_vector<Id> faces, cells;
-    forEachFace([&](Id f, Id) {
+    Ids faces, cells;
+    forEach(faces_.ids(), [&](Id f) {
       if (mover_.shapeRefuses(f, mover_.face(f), bestShape_) != Refusal::None ||
           mover_.angleRefuses(f, mover_.face(f), bestRelation_) != Refusal::None)
         faces.push_back(f);
     });
-    forEachCell([&](Id c, Id) {
+    forEach(cells_.ids(), [&](Id c) {
       if (mover_.cellRefuses(mover_.cell(c), bestCell_) != Refusal::None) cells.push_back(c);
     });
     for (Id f : faces) facesBefore_.emplace(f, mover_.face(f));
     for (Id c : cells) cellsBefore_.emplace(c, mover_.cell(c));
   }
 
-  /// To the part of its way that a point may go; at its end and at its start to the bit.
-  void place(Id i) {
-    const Id p = points_[i];
-    const Vec3 to = part_[i] == 1 ? targets_[i] : Vec3(start_[i] + part_[i] * (targets_[i] - start_[i]));
-    for (int a = 0; a < 3; ++a)
-      if (!(mesh_.fixed[p] >> a & 1)) mesh_.points[p][a] = part_[i] == 0 ? start_[i][a] : to[a];
+  /// Where it was outside a limit; else the best there is, which asks for the limit.
+  template <class Map, class State>
+  static const State& before(const Map& map, Id id, const State& best) {
+    const auto it = map.find(id);
+    return it == map.end() ? best : it->second;
   }
 
-  void mark(Id p) {
-    for (Id f : mover_.facesOf(p)) shapes_.add(region_.faceSlot[f]);
-    for (Id c : mover_.cellsOf(p)) {
-      const Id slot = region_.cellSlot[c];
-      if (cells_.has(slot)) continue;
-      cells_.add(slot);
-      for (Id f : region_.cellFaces[slot]) relations_.add(region_.faceSlot[f]);
-    }
-  }
-
-  template <class Part>
-  const Part& faceBefore(Id f, const Part& best) const {
-    const auto before = facesBefore_.find(f);
-    return before == facesBefore_.end() ? best : before->second;
-  }
-
-  void measure() {
-    forEachFace([&](Id f, Id slot) {
-      shapes_.visit(slot, [&] {
-        Shape& now = mover_.face(f);
-        now = mover_.shapeNow(f);
-        return mover_.shapeRefuses(f, now, faceBefore<Shape>(f, bestShape_));
-      });
-    });
-    forEachCell([&](Id c, Id slot) {
-      cells_.visit(slot, [&] {
-        CellState& now = mover_.cell(c);
-        now = mover_.cellNow(c);
-        const auto before = cellsBefore_.find(c);
-        return mover_.cellRefuses(now, before == cellsBefore_.end() ? bestCell_ : before->second);
-      });
-    });
-    forEachFace([&](Id f, Id slot) {
-      relations_.visit(slot, [&] {
-        Relation& now = mover_.face(f);
-        now = mover_.relationNow(f);
-        return mover_.angleRefuses(f, now, faceBefore<Relation>(f, bestRelation_));
-      });
-    });
-  }
-
-  /// Places in points_ of those that are not where they started, around what breaks a limit.
+  /// Measures what was touched. Places in points_ of those around what breaks a limit that are not where they
+  /// started.
   std::vector<Id> refused() {
+    Ids shapes, relations, cells;
+    forEach(faces_.ids(), [&](Id f) {
+      if (!faces_.has(region_.faceSlot[f], kShape)) return;
+      Shape& now = mover_.face(f);
+      now = mover_.shapeNow(f);
+      if (mover_.shapeRefuses(f, now, before(facesBefore_, f, bestShape_)) != Refusal::None)
+        shapes.push_back(f);
+    });
+    forEach(cells_.ids(), [&](Id c) {
+      CellState& now = mover_.cell(c);
+      now = mover_.cellNow(c);
+      if (mover_.cellRefuses(now, before(cellsBefore_, c, bestCell_)) != Refusal::None) cells.push_back(c);
+    });
+    forEach(faces_.ids(), [&](Id f) {
+      Relation& now = mover_.face(f);
+      now = mover_.relationNow(f);
+      if (mover_.angleRefuses(f, now, before(facesBefore_, f, bestRelation_)) != Refusal::None)
+        relations.push_back(f);
+    });
+    faces_.clear([&](Id f) { return region_.faceSlot[f]; });
+    cells_.clear([&](Id c) { return region_.cellSlot[c]; });
+    return pointsAround(shapes, relations, cells);
+  }
+
+  std::vector<Id> pointsAround(const Ids& shapes, const Ids& relations, const Ids& cells) const {
     std::vector<Id> found;
     const auto addPoints = [&](Span<Id> points) {
       for (Id p : points) {
@@ -189,16 +182,12 @@ class NodeMover::MoveOfAll {
     const auto addCell = [&](Id c) {
       if (region_.isInner(c)) addPoints(mover_.pointsOf(c));
     };
-    for (Id f = 0; f < mesh_.faceCount(); ++f) {
-      const Id slot = region_.faceSlot[f];
-      if (slot == kNone) continue;
-      if (shapes_.take(slot)) addPoints(mesh_.faces[f]);
-      if (!relations_.take(slot)) continue;
+    for (Id f : shapes) addPoints(mesh_.faces[f]);
+    for (Id c : cells) addCell(c);
+    for (Id f : relations) {
       addCell(mesh_.owner[f]);
       if (mover_.isInternal(f)) addCell(mesh_.neighbour[f]);
     }
-    for (Id c = 0; c < mesh_.cellCount; ++c)
-      if (region_.isInner(c) && cells_.take(region_.cellSlot[c])) addCell(c);
     sortUnique(found);
     return found;
   }
@@ -212,21 +201,20 @@ class NodeMover::MoveOfAll {
   PolyMesh& mesh_;
   const MoverRegion& region_;
   const std::vector<Id>& points_;
-  const std::vector<Vec3>& targets_;
-  std::vector<Vec3> start_;   // #points
-  std::vector<double> part_;  // #points of its way that a point has gone
-  std::vector<Id> indexOf_;   // #slots of points: place in points_, or kNone
-  Marks shapes_, relations_, cells_;
+  std::vector<Vec3> start_;  // #points; the targets until they go there
+  std::vector<float> part_;  // #points of its way that a point has gone
+  std::vector<Id> indexOf_;  // #slots of points: place in points_, or kNone
+  Noted faces_, cells_;
+  // What was outside a limit may stay so if it gets no worse.
   const Shape bestShape_ = bestShape();
   const Relation bestRelation_ = bestRelation();
   const CellState bestCell_ = bestCell();
-  // What is outside a limit before the moves, and may stay so if it gets no worse.
   std::unordered_map<Id, FaceState> facesBefore_;
   std::unordered_map<Id, CellState> cellsBefore_;
 };
 
-std::vector<double> NodeMover::moveAll(const std::vector<Id>& points, const std::vector<Vec3>& targets) {
-  return MoveOfAll(*this, points, targets).run();
+std::vector<float> NodeMover::moveAll(const std::vector<Id>& points, std::vector<Vec3> targets) {
+  return MoveOfAll(*this, points, std::move(targets)).run();
 }
 
 }  // namespace pm

@@ -39,33 +39,37 @@ Csr<Id> collectRows(Id count, const ForEachPair& forEachPair) {
   forEachPair([&](Id slot, Id) { ++rows.offsets[slot + 1]; });
   std::partial_sum(rows.offsets.begin(), rows.offsets.end(), rows.offsets.begin());
   rows.values.resize(rows.offsets.back());
-  std::vector<Id> next(rows.offsets.begin(), rows.offsets.end() - 1);
-  forEachPair([&](Id slot, Id value) { rows.values[next[slot]++] = value; });
+  // Each offset moves to the end of its row, the next row's start, and all are put back one place on.
+  forEachPair([&](Id slot, Id value) { rows.values[rows.offsets[slot]++] = value; });
+  std::rotate(rows.offsets.rbegin(), rows.offsets.rbegin() + 1, rows.offsets.rend());
+  rows.offsets[0] = 0;
   return rows;
 }
 
-/// Rows of faces with other boundary faces, from pairs (slot, face) in ascending order of faces; the internal
-/// faces in them stay.
+/// Gives rows of faces other boundary faces, from pairs (slot, face) in ascending order of faces; the
+/// internal faces in them stay. In place, for a second copy of such rows would be a stage's largest need of
+/// memory.
 template <class ForEachPair>
-Csr<Id> withBoundary(const Csr<Id>& rows, Id internalFaces, const ForEachPair& forEachPair) {
+void exchangeBoundary(Csr<Id>& rows, Id internalFaces, const ForEachPair& forEachPair) {
   const Csr<Id> boundary = collectRows(rows.rows(), forEachPair);
-  const auto internalEnd = [&](Id i) { return std::lower_bound(rows[i].begin(), rows[i].end(), internalFaces); };
-  Csr<Id> all;
-  all.offsets.resize(rows.offsets.size());
-  const tbb::blocked_range<Id> every(0, rows.rows(), 4096);
-  tbb::parallel_for(every, [&](const auto& range) {
-    for (Id i = range.begin(); i < range.end(); ++i)
-      all.offsets[i + 1] = static_cast<Id>(internalEnd(i) - rows[i].begin()) + static_cast<Id>(boundary[i].size());
-  });
-  std::partial_sum(all.offsets.begin(), all.offsets.end(), all.offsets.begin());
-  all.values.resize(all.offsets.back());
-  tbb::parallel_for(every, [&](const auto& range) {
-    for (Id i = range.begin(); i < range.end(); ++i) {
-      const auto next = std::copy(rows[i].begin(), internalEnd(i), all.values.begin() + all.offsets[i]);
-      std::copy(boundary[i].begin(), boundary[i].end(), next);
-    }
-  });
-  return all;
+  // Internal faces move together, forwards; then apart, backwards, to leave room for the others.
+  auto end = rows.values.begin();
+  for (Id i = 0; i < rows.rows(); ++i) {
+    const auto first = rows.values.begin() + rows.offsets[i],
+               last = rows.values.begin() + rows.offsets[i + 1];
+    rows.offsets[i] = static_cast<Id>(end - rows.values.begin());
+    end = std::copy(first, std::lower_bound(first, last, internalFaces), end);
+  }
+  Id internalEnd = static_cast<Id>(end - rows.values.begin());
+  rows.values.resize(internalEnd + boundary.values.size());
+  auto next = rows.values.end();
+  for (Id i = rows.rows(); i-- > 0;) {
+    rows.offsets[i + 1] = static_cast<Id>(next - rows.values.begin());
+    next = std::copy_backward(boundary[i].begin(), boundary[i].end(), next);
+    const auto first = rows.values.begin() + rows.offsets[i];
+    next = std::copy_backward(first, rows.values.begin() + internalEnd, next);
+    internalEnd = rows.offsets[i];
+  }
 }
 
 }  // namespace
@@ -150,11 +154,11 @@ void MoverRegion::renewBoundary(const PolyMesh& mesh) {
   faces = lastSlot == faceSlot.rend() ? 0 : *lastSlot + 1;
   for (Id f = internal; f < mesh.faceCount(); ++f)
     if (isInner(mesh.owner[f])) faceSlot[f] = faces++;
-  cellFaces = withBoundary(cellFaces, internal, [&](const auto& body) {
+  exchangeBoundary(cellFaces, internal, [&](const auto& body) {
     for (Id f = internal; f < mesh.faceCount(); ++f)
       if (faceSlot[f] != kNone) body(cellSlot[mesh.owner[f]], f);
   });
-  pointFaces = withBoundary(pointFaces, internal, [&](const auto& body) {
+  exchangeBoundary(pointFaces, internal, [&](const auto& body) {
     for (Id f = internal; f < mesh.faceCount(); ++f)
       for (Id p : mesh.faces[f])
         if (pointSlot[p] != kNone) body(pointSlot[p], f);

@@ -104,10 +104,11 @@ class NodeMover {
     return attempt(points, targets, N, kAny, std::cref(accept)) == Refusal::None;
   }
   bool improveTogether(const std::vector<Id>& points, const std::vector<Vec3>& targets);
-  /// Moves many different points at once, in parallel; where that breaks a limit, those around go back, half
-  /// of their way or all of it. Returns the part of its way that each point has gone: 1, 0.5 or 0. Costs a
-  /// fifth of moving them one by one, and keeps fewer: a point goes back for what its neighbours break.
-  std::vector<double> moveAll(const std::vector<Id>& points, const std::vector<Vec3>& targets);
+  /// Moves many points at once, in parallel (of a point named twice only the first counts); where that breaks
+  /// a limit, those around go back, half of their way or all of it. Returns the part of its way that each
+  /// point has gone: 1, 0.5 or 0. Costs a fifth of moving them one by one, and keeps fewer: a point goes back
+  /// for what its neighbours break.
+  std::vector<float> moveAll(const std::vector<Id>& points, std::vector<Vec3> targets);
   /// Are all measures around p within the limits?
   bool holdsAround(Id p) const;
   /// Would the limits hold if a wall face of a movable point were cut from one of its points to another? What

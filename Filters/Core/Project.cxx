@@ -177,7 +177,7 @@ class Projector {
       targets[row] = to;
       targets[n + row] = 0.5 * (mesh_.points[points[n + row]] + to + baseOffset_[row]);
     });
-    const std::vector<double> part = mover_.moveAll(points, targets);
+    const std::vector<float> part = mover_.moveAll(points, std::move(targets));
     for (std::size_t row = 0; row < n; ++row) led_[row] = part[row] == 1;
   }
 

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <optional>
+#include <set>
 
 #include "FeatureBridges.h"
 #include "FeatureCoverage.h"
@@ -18,7 +19,7 @@
 namespace pm {
 namespace {
 
-constexpr int kBridgeRounds = 2;  // bridges beside each other are built one after the other
+constexpr int kBridgeRounds = 3;  // bridges beside each other are built one after the other
 
 /// The stage's state. What knows the wall's faces is brought up to date when faces are cut.
 class Resolver {
@@ -75,6 +76,7 @@ class Resolver {
  private:
   /// Of the cells behind these faces, wall faces have been cut or merged.
   void renew(const std::vector<Id>& cells) {
+    wall_ = {};  // two would be the stage's largest need of memory
     wall_ = wallSurface(mesh_);
     mover_->wallFacesChanged(cells);
   }
@@ -108,12 +110,14 @@ class Resolver {
     snapper_.reset();
     mover_.reset();
     const auto inSight = [&](const Vec3& from, const Vec3& to) { return seesFrom(from, to); };
-    for (int round = 0; round < kBridgeRounds; ++round) {
-      const std::vector<Id> added =
-          bridgeGaps(mesh_, {wall_, field_, graph_, held, options_.limits, inSight});
-      if (added.empty()) break;
+    std::set<GapKey> hopeless;
+    BridgesBuilt built;
+    built.more = true;
+    for (int round = 0; built.more && round < kBridgeRounds; ++round) {
+      built = bridgeGaps(mesh_, {wall_, field_, graph_, held, options_.limits, inSight}, hopeless);
+      if (built.curves.empty()) break;
       wall_ = wallSurface(mesh_);
-      held.curve.insert(held.curve.end(), added.begin(), added.end());
+      held.curve.insert(held.curve.end(), built.curves.begin(), built.curves.end());
       held.corner.resize(held.curve.size(), kNone);
     }
     mover_.emplace(mesh_, options_.limits, pointsNearWall(mesh_, 1), &monitor_);

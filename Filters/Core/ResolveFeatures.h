@@ -11,7 +11,7 @@ namespace pm {
 
 struct ResolveFeaturesOptions {
   FeatureOptions features;
-  int rounds = 5;
+  int rounds = 4;
   QualityLimits limits;
 };
 

@@ -51,7 +51,7 @@ class WallFitter {
       targets[i] = mover_.point(nodes[i]);
       if (std::abs(way) >= kLeastShift * unit_) targets[i] += way * n;
     });
-    mover_.moveAll(nodes, targets);
+    mover_.moveAll(nodes, std::move(targets));
   }
 
   // Maximum approximation (4.7.5): where a face stays off the geometry, often at an edge that found no path,
@@ -93,15 +93,19 @@ class WallFitter {
  private:
   /// From the representative points of the wall to the geometry.
   struct Ways {
-    std::vector<Vec3> node, edge, face;  // #W, #neighbours.values, #boundary faces
+    std::vector<Eigen::Vector3f> node, edge, face;  // #W, #neighbours.values, #boundary faces
   };
 
   Ways waysToGeometry() const {
     const PolyMesh& mesh = mover_.mesh();
     const Csr<Id>& beside = wall_.neighbours;
-    Ways ways{std::vector<Vec3>(wall_.size()), std::vector<Vec3>(beside.values.size()),
-              std::vector<Vec3>(mesh.boundaryFaces())};
-    const auto way = [&](const Vec3& from) -> Vec3 { return field_.closest(from).point - from; };
+    Ways ways;
+    ways.node.resize(wall_.size());
+    ways.edge.resize(beside.values.size());
+    ways.face.resize(mesh.boundaryFaces(), Eigen::Vector3f::Zero());
+    const auto way = [&](const Vec3& from) -> Eigen::Vector3f {
+      return (field_.closest(from).point - from).cast<float>();
+    };
     tbb::parallel_for(Id(0), wall_.size(), [&](Id row) {
       const Vec3& x = mover_.point(wall_.nodes[row]);
       ways.node[row] = way(x);
@@ -122,7 +126,8 @@ class WallFitter {
 
   double shiftAt(Id row, const Vec3& n, const Ways& ways) const {
     double lowest = 0, highest = 0;
-    const auto add = [&](const Vec3& way) {
+    const auto add = [&](const Eigen::Vector3f& single) {
+      const Vec3 way = single.cast<double>();
       if (way.norm() / unit_ >= kMostChord) return;
       lowest = std::min(lowest, way.dot(n));
       highest = std::max(highest, way.dot(n));
@@ -130,7 +135,7 @@ class WallFitter {
     add(ways.node[row]);
     for (Id k = wall_.neighbours.offsets[row]; k < wall_.neighbours.offsets[row + 1]; ++k) add(ways.edge[k]);
     for (Id f : wall_.faces[row]) add(ways.face[f - mover_.mesh().internalFaces()]);
-    const double own = ways.node[row].dot(n);
+    const double own = ways.node[row].cast<double>().dot(n);
     return std::clamp(0.5 * (lowest + highest), own - kMostShift * unit_, own + kMostShift * unit_);
   }
 

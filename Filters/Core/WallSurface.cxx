@@ -45,7 +45,8 @@ void joinNodes(const PolyMesh& mesh, WallSurface& wall) {
         beside.clear();
         for (Id f : wall.faces[i]) {
           const Span<Id> row = mesh.faces[f];
-          const std::size_t k = std::find(row.begin(), row.end(), wall.nodes[i]) - row.begin(), n = row.size();
+          const std::size_t k = std::find(row.begin(), row.end(), wall.nodes[i]) - row.begin(),
+                            n = row.size();
           beside.push_back(wall.rowOf[row[(k + 1) % n]]);
           beside.push_back(wall.rowOf[row[(k + n - 1) % n]]);
         }

@@ -55,13 +55,14 @@ class RidgeBetweenNodes : public ::testing::Test {
       for (const Eigen::Vector2d& place : places)
         if (mesh.points[wall.nodes[row]].head<2>() == place) held.curve[row] = 0;
     const QualityLimits limits;
-    return bridgeGaps(mesh,
-                      {wall, field_, graph_, held, limits, [&](const Vec3&, const Vec3&) { return seen; }});
+    const auto sees = [&](const Vec3&, const Vec3&) { return seen; };
+    return bridgeGaps(mesh, {wall, field_, graph_, held, limits, sees}, hopeless_).curves;
   }
 
   std::unique_ptr<SurfaceModel> model_;
   DistanceField field_;
   FeatureGraph graph_;
+  std::set<GapKey> hopeless_;
 };
 
 TEST_F(RidgeBetweenNodes, GetsANodeAndBothEdges) {

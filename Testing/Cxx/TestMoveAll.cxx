@@ -28,7 +28,7 @@ std::vector<Vec3> placesAround(const PolyMesh& mesh, double reach, unsigned seed
 /// Where a point is that has gone a part of its way; its fixed coordinates stay.
 Vec3 placeOf(const PolyMesh& before, Id p, const Vec3& target, double part) {
   const Vec3& from = before.points[p];
-  Vec3 to = part == 1 ? target : Vec3(from + part * (target - from));
+  Vec3 to = part == 1 ? target : Vec3(from + 0.5 * (target - from));
   for (int a = 0; a < 3; ++a)
     if (part == 0 || (before.fixed[p] >> a & 1)) to[a] = from[a];
   return to;
@@ -41,7 +41,7 @@ TEST(MoveAll, LeavesValidMeshesAndTrueCaches) {
     const PolyMesh before = mesh;
     const std::vector<Vec3> targets = placesAround(mesh, 0.02 + 0.02 * (seed % 8), seed);
     NodeMover mover(mesh, {});
-    const std::vector<double> part = mover.moveAll(allPoints(mesh), targets);
+    const std::vector<float> part = mover.moveAll(allPoints(mesh), targets);
     ASSERT_EQ(whatIsWrong(mesh), "") << "domain " << seed;
     for (Id p : allPoints(mesh)) {
       EXPECT_EQ(mesh.points[p], placeOf(before, p, targets[p], part[p])) << "point " << p;
@@ -63,8 +63,8 @@ TEST(MoveAll, WhatBreaksNoLimitGoesAllTheWay) {
   for (unsigned seed = 0; seed < kMeshes; ++seed) {
     PolyMesh mesh = layer(seed);
     const std::vector<Vec3> targets = placesAround(mesh, 1e-7, seed);
-    const std::vector<double> part = NodeMover(mesh, {}).moveAll(allPoints(mesh), targets);
-    EXPECT_EQ(std::count(part.begin(), part.end(), 1.0), static_cast<std::ptrdiff_t>(part.size()));
+    const std::vector<float> part = NodeMover(mesh, {}).moveAll(allPoints(mesh), targets);
+    EXPECT_EQ(std::count(part.begin(), part.end(), 1.0f), static_cast<std::ptrdiff_t>(part.size()));
   }
 }
 
@@ -74,7 +74,7 @@ TEST(MoveAll, OnlyPointsThatMayMoveDo) {
   const std::vector<Id> movable = pointsNearWall(mesh, 0);
   NodeMover mover(mesh, {}, movable);
   const std::vector<Vec3> targets = placesAround(mesh, 0.03, 1);
-  const std::vector<double> part = mover.moveAll(allPoints(mesh), targets);
+  const std::vector<float> part = mover.moveAll(allPoints(mesh), targets);
   std::size_t moved = 0;
   for (Id p : allPoints(mesh)) {
     if (!mover.isMovable(p)) {
@@ -84,6 +84,21 @@ TEST(MoveAll, OnlyPointsThatMayMoveDo) {
     moved += mesh.points[p] != before.points[p];
   }
   EXPECT_GT(moved, movable.size() / 4);
+  EXPECT_EQ(whatIsWrong(mesh), "");
+}
+
+TEST(MoveAll, APointNamedTwiceGoesWhereItWasToGoFirst) {
+  PolyMesh mesh = layer(2);
+  std::vector<Id> free;
+  for (Id p : allPoints(mesh))
+    if (mesh.fixed[p] == 0) free.push_back(p);
+  ASSERT_GE(free.size(), 2u);
+  const Id p = free[0], q = free[1];
+  const Vec3 step = Vec3::Constant(1e-6 * mesh.finestSize), to = mesh.points[p] + step;
+  NodeMover mover(mesh, {});
+  const std::vector<float> part = mover.moveAll({p, q, p}, {to, mesh.points[q] + step, to + step});
+  EXPECT_EQ(part, (std::vector<float>{1, 1, 0}));
+  EXPECT_EQ(mesh.points[p], to);
   EXPECT_EQ(whatIsWrong(mesh), "");
 }
 
@@ -139,7 +154,7 @@ TEST(MoveAll, IsSeenByThoseWhoTryAgainOnlyAfterAChange) {
   EXPECT_EQ(attempts(), mesh.points.size());
   EXPECT_EQ(attempts(), 0u);
   const Id p = static_cast<Id>(mesh.points.size()) / 2;
-  const std::vector<double> part =
+  const std::vector<float> part =
       mover.moveAll({p}, {mesh.points[p] + Vec3::Constant(1e-6 * mesh.finestSize)});
   EXPECT_EQ(part[0], 1);
   const std::size_t again = attempts();
