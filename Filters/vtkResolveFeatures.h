@@ -62,7 +62,7 @@ class PROJECTIONMESHERFILTERS_EXPORT vtkResolveFeatures : public vtkFoamLimitsSt
   vtkGetMacro(ShortestCurve, double);
   ///@}
   ///@{
-  /** Rounds of moving nodes onto features. */
+  /** Most rounds of moving nodes onto features; fewer are done where another is not worth it. */
   vtkSetClampMacro(Rounds, int, 1, 1000);
   vtkGetMacro(Rounds, int);
   ///@}

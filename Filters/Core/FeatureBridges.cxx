@@ -314,6 +314,17 @@ std::vector<Bridge> independent(std::vector<std::optional<Bridge>>& bridges, Id 
   return chosen;
 }
 
+/// #P is the point in a cell that a bridge changes?
+std::vector<char> changedPoints(const PolyMesh& mesh, const Csr<Id>& facesOfCell,
+                                const std::vector<Bridge>& bridges) {
+  std::vector<char> changed(mesh.points.size(), 0);
+  for (const Bridge& bridge : bridges)
+    for (Id c : bridge.changed)
+      for (Id f : facesOfCell[c])
+        for (Id p : mesh.faces[f]) changed[p] = 1;
+  return changed;
+}
+
 }  // namespace
 
 BridgesBuilt bridgeGaps(PolyMesh& mesh, const BridgeSite& site, std::set<GapKey>& hopeless) {
@@ -328,18 +339,25 @@ BridgesBuilt bridgeGaps(PolyMesh& mesh, const BridgeSite& site, std::set<GapKey>
   tbb::parallel_for(std::size_t(0), gaps.size(), [&](std::size_t i) {
     tbb::this_task_arena::isolate([&] { bridges[i] = builder.build(gaps[i]); });
   });
-  std::size_t found = 0;
-  for (std::size_t i = 0; i < gaps.size(); ++i)
-    if (bridges[i])
-      ++found;
-    else
-      hopeless.insert(key(gaps[i]));
+  const auto found = static_cast<std::size_t>(
+      std::count_if(bridges.begin(), bridges.end(), [](const auto& bridge) { return bridge.has_value(); }));
+  std::vector<char> isHopeless(gaps.size());
+  for (std::size_t i = 0; i < gaps.size(); ++i) isHopeless[i] = !bridges[i];
   const std::vector<Bridge> chosen = independent(bridges, mesh.cellCount);
+  const std::vector<char> changed = changedPoints(mesh, builder.facesOfCell(), chosen);
+  const auto isBeside = [&](const GapKey& gap) { return changed[gap[1]] || changed[gap[2]]; };
+  for (std::size_t i = 0; i < gaps.size(); ++i)
+    if (isHopeless[i]) hopeless.insert(key(gaps[i]));
+  BridgesBuilt built{{}, chosen.size() < found};
+  for (auto gap = hopeless.begin(); gap != hopeless.end();) {
+    const bool again = isBeside(*gap);
+    built.more |= again;
+    gap = again ? hopeless.erase(gap) : std::next(gap);
+  }
   std::vector<WallPath> paths;
   for (const Bridge& bridge : chosen) paths.push_back(bridge.path);
   std::size_t next = mesh.points.size();
   splitColumns(mesh, builder.facesOfCell(), paths);
-  BridgesBuilt built{{}, chosen.size() < found};
   for (const Bridge& bridge : chosen) {
     for (const auto& [p, place] : bridge.moved) mesh.points[p] = place;
     for (const Vec3& place : bridge.added) mesh.points[next++] = place;

@@ -42,9 +42,10 @@ using GapKey = std::array<Id, 3>;
 
 struct BridgesBuilt {
   std::vector<Id> curves;  ///< of each new wall node in ascending order, the curve it lies on
-  bool more = false;       ///< others found a place, but beside one that was built
+  bool more = false;       ///< what was built may let others hold
 };
-/// Builds what bridges it can. hopeless: gaps that need not be tried; receives those where none holds.
+/// Builds what bridges it can. hopeless: gaps that need not be tried; receives those where none holds, and
+/// loses those beside one that was built.
 BridgesBuilt bridgeGaps(PolyMesh& mesh, const BridgeSite& site, std::set<GapKey>& hopeless);
 
 }  // namespace pm

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <set>
 
@@ -19,6 +20,9 @@
 namespace pm {
 namespace {
 
+// Another round is worth it when no more than this part of the nodes that missed still does; and while they
+// are few, of all wall nodes.
+constexpr double kWorthARound = 0.9, kFew = 0.002;
 constexpr int kBridgeRounds = 3;  // bridges beside each other are built one after the other
 
 /// The stage's state. What knows the wall's faces is brought up to date when faces are cut.
@@ -40,6 +44,7 @@ class Resolver {
   /// Traces and snaps; nodes that miss make room for others in the next round.
   void snap() {
     PathHistory history;
+    std::size_t missedBefore = std::numeric_limits<std::size_t>::max();
     for (int round = 0; round < options_.rounds; ++round) {
       monitor_.check(0.05 + 0.75 * round / options_.rounds, "feature snapping");
       setTargets(history);
@@ -48,7 +53,9 @@ class Resolver {
       snapper_->workAround(snapper_->missed());
       snapper_->relax();
       snapper_->force();
-      if (snapper_->missed().empty()) break;
+      const std::size_t missed = snapper_->missed().size();
+      if (missed == 0 || (missed > kFew * wall_.size() && missed > kWorthARound * missedBefore)) break;
+      missedBefore = missed;
       snapper_->report(history);
       if (round + 1 < options_.rounds) cut(snapper_->helpfulCuts());
     }

@@ -11,7 +11,7 @@ namespace pm {
 
 struct ResolveFeaturesOptions {
   FeatureOptions features;
-  int rounds = 4;
+  int rounds = 5;  ///< at most: another is done as long as the last was worth it
   QualityLimits limits;
 };
 
