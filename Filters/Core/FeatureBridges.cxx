@@ -339,18 +339,17 @@ BridgesBuilt bridgeGaps(PolyMesh& mesh, const BridgeSite& site, std::set<GapKey>
   tbb::parallel_for(std::size_t(0), gaps.size(), [&](std::size_t i) {
     tbb::this_task_arena::isolate([&] { bridges[i] = builder.build(gaps[i]); });
   });
-  const auto found = static_cast<std::size_t>(
-      std::count_if(bridges.begin(), bridges.end(), [](const auto& bridge) { return bridge.has_value(); }));
-  std::vector<char> isHopeless(gaps.size());
-  for (std::size_t i = 0; i < gaps.size(); ++i) isHopeless[i] = !bridges[i];
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < gaps.size(); ++i)
+    if (bridges[i])
+      ++found;
+    else
+      hopeless.insert(key(gaps[i]));
   const std::vector<Bridge> chosen = independent(bridges, mesh.cellCount);
   const std::vector<char> changed = changedPoints(mesh, builder.facesOfCell(), chosen);
-  const auto isBeside = [&](const GapKey& gap) { return changed[gap[1]] || changed[gap[2]]; };
-  for (std::size_t i = 0; i < gaps.size(); ++i)
-    if (isHopeless[i]) hopeless.insert(key(gaps[i]));
   BridgesBuilt built{{}, chosen.size() < found};
   for (auto gap = hopeless.begin(); gap != hopeless.end();) {
-    const bool again = isBeside(*gap);
+    const bool again = changed[(*gap)[1]] || changed[(*gap)[2]];
     built.more |= again;
     gap = again ? hopeless.erase(gap) : std::next(gap);
   }

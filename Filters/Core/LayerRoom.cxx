@@ -65,17 +65,7 @@ class RoomMaker {
     sortUnique(below);
     return below;
   }
-  Vec3 evened(const NodeMover& mover, Id p) const {
-    Vec3 sum = Vec3::Zero();
-    double count = 0;
-    for (Id f : mover.facesOf(p)) {
-      const Span<Id> row = mesh_.faces[f];
-      const std::size_t k = std::find(row.begin(), row.end(), p) - row.begin(), n = row.size();
-      sum += mesh_.points[row[(k + 1) % n]] + mesh_.points[row[(k + n - 1) % n]];
-      count += 2;
-    }
-    return 0.5 * (mesh_.points[p] + sum / count);
-  }
+  Vec3 evened(const NodeMover& mover, Id p) const { return 0.5 * (mesh_.points[p] + mover.neighbourMean(p)); }
   /// As far as it goes towards the place where the edge is upright and long enough.
   void stretch(NodeMover& mover, Id b) const {
     if (!leans(b) && !isShort(b)) return;

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MoverRegion.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <numeric>
+
+#include "SortedRows.h"
 
 namespace pm {
 namespace {
@@ -88,26 +87,9 @@ Csr<Id> facesOfSlots(const PolyMesh& mesh, const std::vector<Id>& cellSlot, Id f
 }
 
 Csr<Id> pointsOfRows(const PolyMesh& mesh, const Csr<Id>& faceRows) {
-  Csr<Id> rows;
-  rows.offsets.assign(faceRows.offsets.size(), 0);
-  const auto forEachRow = [&](const auto& body) {
-    tbb::parallel_for(tbb::blocked_range<Id>(0, faceRows.rows(), 1024), [&](const auto& range) {
-      std::vector<Id> own;
-      for (Id i = range.begin(); i < range.end(); ++i) {
-        own.clear();
-        for (Id f : faceRows[i]) own.insert(own.end(), mesh.faces[f].begin(), mesh.faces[f].end());
-        sortUnique(own);
-        body(i, own);
-      }
-    });
-  };
-  forEachRow([&](Id i, const auto& own) { rows.offsets[i + 1] = static_cast<Id>(own.size()); });
-  std::partial_sum(rows.offsets.begin(), rows.offsets.end(), rows.offsets.begin());
-  rows.values.resize(rows.offsets.back());
-  forEachRow([&](Id i, const auto& own) {
-    std::copy(own.begin(), own.end(), rows.values.begin() + rows.offsets[i]);
+  return sortedRows(faceRows.rows(), [&](Id i, std::vector<Id>& points) {
+    for (Id f : faceRows[i]) points.insert(points.end(), mesh.faces[f].begin(), mesh.faces[f].end());
   });
-  return rows;
 }
 
 MoverRegion::MoverRegion(const PolyMesh& mesh, const std::vector<Id>* movable)

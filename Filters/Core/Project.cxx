@@ -105,11 +105,13 @@ class Projector {
       monitor_.check(0.4 + 0.4 * (round - driftingRounds()) / kSettlingRounds, "front smoothing");
       findWebs();
       placeBases();
-      leadAll([&](Id row) { return nextPlace(row); });
+      leadAll([&](Id row) { return onGeometry(row, mesh_.points[wall_.nodes[row]] + stepAlong(row)); });
       mover_.forEach(wallBlocks_, [&](Id p) {
         const Id row = wall_.rowOf[p];
-        distance_[row] = led_[row] ? 0 : distance_[row];
-        if (!led_[row] && mover_.worthTrying(p, tried_[row])) approachNode(p, row);
+        if (led_[row])
+          distance_[row] = 0;
+        else if (mover_.worthTrying(p, tried_[row]))
+          approachNode(p, row);
       });
     }
     std::fill(web_.begin(), web_.end(), 0.0);
@@ -231,15 +233,14 @@ class Projector {
     return 0.5 * (mean - mean.dot(n) * n) + pullOfWebs(row);
   }
 
-  Vec3 nextPlace(Id row) const {
-    const Vec3 along = mesh_.points[wall_.nodes[row]] + stepAlong(row);
-    return along + wayToGeometry(row, along);
-  }
+  Vec3 onGeometry(Id row, const Vec3& from) const { return from + wayToGeometry(row, from); }
 
   void approachNode(Id p, Id row) {
     const Vec3 x = mesh_.points[p];
     distance_[row] = 0;
-    if (stepAlong(row).norm() > kSmallStep * wall_.scale[row] && moveWithBase(p, row, nextPlace(row))) return;
+    const Vec3 step = stepAlong(row);
+    if (step.norm() > kSmallStep * wall_.scale[row] && moveWithBase(p, row, onGeometry(row, x + step)))
+      return;
     const Vec3 way = wayToGeometry(row, x);
     if (moveWithBase(p, row, x + way)) return;
     // The prism is in the way: take its foot along.

@@ -118,14 +118,14 @@ class Resolver {
     mover_.reset();
     const auto inSight = [&](const Vec3& from, const Vec3& to) { return seesFrom(from, to); };
     std::set<GapKey> hopeless;
-    BridgesBuilt built;
-    built.more = true;
-    for (int round = 0; built.more && round < kBridgeRounds; ++round) {
-      built = bridgeGaps(mesh_, {wall_, field_, graph_, held, options_.limits, inSight}, hopeless);
+    for (int round = 0; round < kBridgeRounds; ++round) {
+      const BridgesBuilt built =
+          bridgeGaps(mesh_, {wall_, field_, graph_, held, options_.limits, inSight}, hopeless);
       if (built.curves.empty()) break;
       wall_ = wallSurface(mesh_);
       held.curve.insert(held.curve.end(), built.curves.begin(), built.curves.end());
       held.corner.resize(held.curve.size(), kNone);
+      if (!built.more) break;
     }
     mover_.emplace(mesh_, options_.limits, pointsNearWall(mesh_, 1), &monitor_);
   }

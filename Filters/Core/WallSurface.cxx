@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "SortedRows.h"
+
 namespace pm {
 namespace {
 
@@ -38,30 +40,13 @@ void joinFaces(const PolyMesh& mesh, const std::vector<Id>& wallFaces, WallSurfa
 
 /// The rows before and after a node on the faces around it.
 void joinNodes(const PolyMesh& mesh, WallSurface& wall) {
-  const auto forEachRow = [&](const auto& body) {
-    tbb::parallel_for(tbb::blocked_range<Id>(0, wall.size(), 1024), [&](const auto& range) {
-      std::vector<Id> beside;
-      for (Id i = range.begin(); i != range.end(); ++i) {
-        beside.clear();
-        for (Id f : wall.faces[i]) {
-          const Span<Id> row = mesh.faces[f];
-          const std::size_t k = std::find(row.begin(), row.end(), wall.nodes[i]) - row.begin(),
-                            n = row.size();
-          beside.push_back(wall.rowOf[row[(k + 1) % n]]);
-          beside.push_back(wall.rowOf[row[(k + n - 1) % n]]);
-        }
-        sortUnique(beside);
-        body(i, beside);
-      }
-    });
-  };
-  Csr<Id>& rows = wall.neighbours;
-  rows.offsets.assign(wall.nodes.size() + 1, 0);
-  forEachRow([&](Id i, const auto& beside) { rows.offsets[i + 1] = static_cast<Id>(beside.size()); });
-  sumUp(rows.offsets);
-  rows.values.resize(rows.offsets.back());
-  forEachRow([&](Id i, const auto& beside) {
-    std::copy(beside.begin(), beside.end(), rows.values.begin() + rows.offsets[i]);
+  wall.neighbours = sortedRows(wall.size(), [&](Id i, std::vector<Id>& beside) {
+    for (Id f : wall.faces[i]) {
+      const Span<Id> row = mesh.faces[f];
+      const std::size_t k = std::find(row.begin(), row.end(), wall.nodes[i]) - row.begin(), n = row.size();
+      beside.push_back(wall.rowOf[row[(k + 1) % n]]);
+      beside.push_back(wall.rowOf[row[(k + n - 1) % n]]);
+    }
   });
 }
 
