@@ -41,6 +41,12 @@ Box padded(const Box& box) {
 
 }  // namespace
 
+struct Bvh::BinaryNode {
+  FloatBox box;
+  Id first = 0;  // leaf: its number; else: left child, the right one follows
+  bool isLeaf = false;
+};
+
 struct Bvh::Item {
   Box box;
   Id id;
@@ -53,8 +59,9 @@ struct Bvh::Builder {
     Id left = 0;  // items in the left child
   };
 
+  const Bvh& bvh;
   std::vector<Item> items;
-  std::vector<Node>& nodes;
+  std::vector<BinaryNode> nodes;
 
   /// Builds node `node` over items [begin, end); its descendants fill nodes [next, next + 2 * leaves - 2).
   void build(Id node, Id begin, Id end, Id next, int depth) {
@@ -63,11 +70,11 @@ struct Bvh::Builder {
       grow(box, items[i].box);
       keys.add({items[i].key(0), items[i].key(1), items[i].key(2)});
     }
-    nodes[node].box = box;
+    nodes[node].box = bvh.floatBox(box);
     const Id count = end - begin;
     if (count <= kLeafSize) {
-      nodes[node].first = begin;
-      nodes[node].count = count;
+      nodes[node].first = begin / kLeafSize;
+      nodes[node].isLeaf = true;
       return;
     }
     const Split split = chooseSplit(keys, begin, end, depth);
@@ -139,12 +146,81 @@ struct Bvh::Builder {
 Bvh::Bvh(const std::vector<Box>& boxes) {
   if (boxes.empty()) return;
   const Id count = static_cast<Id>(boxes.size());
-  nodes_.resize(2 * static_cast<std::size_t>(leavesFor(count)) - 1);
-  Builder builder{std::vector<Item>(boxes.size()), nodes_};
+  Builder builder{*this, std::vector<Item>(boxes.size()),
+                  std::vector<BinaryNode>(2 * static_cast<std::size_t>(leavesFor(count)) - 1)};
   tbb::parallel_for(Id(0), count, [&](Id i) { builder.items[i] = {padded(boxes[i]), i}; });
+  Box all;
+  for (const Item& item : builder.items) grow(all, item.box);
+  middle_ = all.centre();
+  const double size = all.size().maxCoeff();
+  if (std::isnormal(size) && std::isnormal(1 / size)) size_ = size, unit_ = 1 / size;
+
   builder.build(0, 0, count, 1, 0);
   order_.resize(boxes.size());
   for (Id i = 0; i < count; ++i) order_[i] = builder.items[i].id;
+  addNode(builder.nodes, 0);
+  nodes_.shrink_to_fit();
+}
+
+/// A node of four from nodes of two, and all below it: of the descendants of `top`, the largest gives way to
+/// its children until there are four or all are leaves.
+Id Bvh::addNode(const std::vector<BinaryNode>& tree, Id top) {
+  std::vector<Id> members;
+  members.reserve(kWidth);
+  members.push_back(top);
+  const auto area = [&](Id i) {
+    const FloatBox& box = tree[i].box;
+    const float x = box.hi[0] - box.lo[0], y = box.hi[1] - box.lo[1], z = box.hi[2] - box.lo[2];
+    return tree[i].isLeaf ? -1 : x * y + y * z + z * x;
+  };
+  while (members.size() < kWidth) {
+    const auto widest =
+        std::max_element(members.begin(), members.end(), [&](Id i, Id j) { return area(i) < area(j); });
+    if (tree[*widest].isLeaf) break;
+    const Id first = tree[*widest].first;
+    *widest = first;
+    members.insert(widest + 1, first + 1);
+  }
+  Node node;
+  node.child.fill(kNoChild);
+  for (int lane = 0; lane < kWidth; ++lane) {
+    const bool isUsed = lane < static_cast<int>(members.size());
+    const FloatBox& box = tree[members[isUsed ? lane : 0]].box;
+    for (int a = 0; a < 3; ++a) node.lo[a][lane] = box.lo[a], node.hi[a][lane] = box.hi[a];
+  }
+  const Id at = static_cast<Id>(nodes_.size());
+  nodes_.push_back(node);
+  for (std::size_t lane = 0; lane < members.size(); ++lane) {
+    const BinaryNode& member = tree[members[lane]];
+    const Id child = member.isLeaf ? ~member.first : addNode(tree, members[lane]);
+    nodes_[at].child[lane] = child;
+  }
+  return at;
+}
+
+/// Rounded outwards. What is very far away comes nearer, into a cube around all boxes: no distance between
+/// grows by that.
+Bvh::FloatBox Bvh::floatBox(const Box& box) const {
+  constexpr double kFar = 1e6;
+  constexpr float kUlp = 1.2e-7f, kLeast = 1e-37f;
+  FloatBox out;
+  for (int a = 0; a < 3; ++a) {
+    const auto relative = [&](double x) {
+      return static_cast<float>(std::clamp((x - middle_[a]) * unit_, -kFar, kFar));
+    };
+    const float lo = relative(box.lo[a]), hi = relative(box.hi[a]);
+    out.lo[a] = lo - (kUlp * std::abs(lo) + kLeast);
+    out.hi[a] = hi + (kUlp * std::abs(hi) + kLeast);
+  }
+  return out;
+}
+
+Box Bvh::laneBox(const Node& node, int lane) const {
+  constexpr double kEps = 4 * std::numeric_limits<double>::epsilon();
+  Vec3 lo, hi;
+  for (int a = 0; a < 3; ++a) lo[a] = node.lo[a][lane], hi[a] = node.hi[a][lane];
+  const Vec3 rounding = kEps * middle_.cwiseAbs();
+  return {middle_ - rounding + size_ * lo, middle_ + rounding + size_ * hi};
 }
 
 }  // namespace pm

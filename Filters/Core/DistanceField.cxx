@@ -116,10 +116,12 @@ void DistanceField::fill(const std::vector<Vec3>& points) {
 }
 
 Closest DistanceField::closest(const Vec3& p) const {
-  Closest seed;
   openvdb::Coord c;
-  if (grids_ && grids_->locate(p, c)) seed.triangle = grids_->triangles->tree().getValue(c);
-  return model_.closest(p, seed);
+  if (!grids_ || !grids_->locate(p, c)) return model_.closest(p);
+  constexpr double kRounding = 1 + 1e-6;
+  const double known = grids_->distances->tree().getValue(c);
+  const Closest found = model_.closestWithin(p, kRounding * (known + (p - grids_->centre(c)).norm()));
+  return found.triangle != kNone ? found : model_.closest(p);  // far from the origin, rounding may count more
 }
 
 std::size_t DistanceField::activeVoxels() const { return grids_ ? grids_->triangles->activeVoxelCount() : 0; }

@@ -291,17 +291,16 @@ bool FeatureSnapper::staysNear(Id row, const Vec3& from, const Vec3& to, double 
 }
 
 /// Largest distance to the geometry of the representative points that follow the node, were it there. Below
-/// `enough` it may come out smaller: the triangle nearest to one point often proves that the next is near.
+/// `enough` it may come out smaller: it is not looked for then.
 double FeatureSnapper::deviation(Id row, const Vec3& at, double enough) const {
   const Id p = wall_.nodes[row];
   const SurfaceModel& model = field_.model();
   Closest near = field_.closest(at);
   double worst = std::sqrt(near.distance2);
   const auto add = [&](const Vec3& point) {
-    const Closest seed = model.closestOnTriangle(point, near.triangle);
-    if (std::sqrt(seed.distance2) < enough) return;
-    near = model.closest(point, seed);
-    worst = std::max(worst, std::sqrt(near.distance2));
+    near = model.closest(point, near, enough);
+    if (const double distance = std::sqrt(near.distance2); distance >= enough)
+      worst = std::max(worst, distance);
   };
   for (Id n : wall_.neighbours[row]) add(0.5 * (at + mesh_.points[wall_.nodes[n]]));
   for (Id f : wall_.faces[row]) {

@@ -41,7 +41,7 @@ class StitchSearch {
       const Id t = bvh_.order()[slot];
       return NodeFacing{model.normal(t), 0, options.interfaces ? model.patchOf(t) : 0};
     };
-    facing_ = bvh_.nodeValues<NodeFacing>(ofSlot, [](NodeFacing& into, const NodeFacing& other) {
+    facing_ = bvh_.childValues<NodeFacing>(ofSlot, [](NodeFacing& into, const NodeFacing& other) {
       into.spread = std::max(into.spread, anglesApart(into.normal, other.normal) + other.spread);
       if (into.patch != other.patch) into.patch = kNone;
     });

@@ -146,10 +146,11 @@ class Search {
     });
     const Bvh& bvh = model_.hierarchy();
     constexpr Id kMixed = kNone;
-    const std::vector<Id> hubOfNode = bvh.nodeValues<Id>([&](Id slot) { return hubs_.of(bvh.order()[slot]); },
-                                                         [&](Id& hub, Id other) {
-                                                           if (other != hub) hub = kMixed;
-                                                         });
+    const std::vector<Id> hubOfNode =
+        bvh.childValues<Id>([&](Id slot) { return hubs_.of(bvh.order()[slot]); },
+                            [&](Id& hub, Id other) {
+                              if (other != hub) hub = kMixed;
+                            });
     const auto skip = [&](Id node, Id begin, Id end) {
       if (hubOfNode[node] == kMixed) return false;
       for (Id slot = begin; slot < end; ++slot)

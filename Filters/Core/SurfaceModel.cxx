@@ -173,12 +173,11 @@ struct SurfaceModel::Hierarchy {
     Box path;
     path.add(p);
     path.add(q);
-    return bvh.any([&](Id, const Box& box) { return box.overlaps(path); },
-                   [&](Id slot) {
-                     const Triangle& t = slots[slot].corners;
-                     const double at = rayHit(p, q - p, points[t[0]], points[t[1]], points[t[2]]);
-                     return at >= 0 && at <= 1 && enough(at);
-                   });
+    return bvh.anyOverlapping(path, [&](Id slot) {
+      const Triangle& t = slots[slot].corners;
+      const double at = rayHit(p, q - p, points[t[0]], points[t[1]], points[t[2]]);
+      return at >= 0 && at <= 1 && enough(at);
+    });
   }
 
   explicit Hierarchy(const SurfaceModel& model) {
@@ -258,19 +257,30 @@ Closest SurfaceModel::closestOnTriangle(const Vec3& p, Id triangle) const {
   return closestOnCorners(p, points_[t[0]], points_[t[1]], points_[t[2]], triangle);
 }
 
-Closest SurfaceModel::closest(const Vec3& p, const Closest& seed) const {
+Closest SurfaceModel::closest(const Vec3& p, const Closest& seed, double enough) const {
   Closest best;
   if (seed.triangle != kNone) best = closestOnTriangle(p, seed.triangle);
-  tree_->bvh.nearest(
-      p, [&] { return best.distance2; },
-      [&](Id slot) {
-        const auto& [t, id] = tree_->slots[slot];
-        const Closest found = closestOnCorners(p, points_[t[0]], points_[t[1]], points_[t[2]], id);
-        if (found.distance2 < best.distance2 ||
-            (found.distance2 == best.distance2 && found.triangle < best.triangle))
-          best = found;
-      });
+  constexpr double stop = -std::numeric_limits<double>::infinity();
+  search(p, best, [&] { return std::sqrt(best.distance2) < enough ? stop : best.distance2; });
   return best;
+}
+
+Closest SurfaceModel::closestWithin(const Vec3& p, double reach) const {
+  Closest best;
+  search(p, best, [&] { return std::min(reach * reach, best.distance2); });
+  return best.distance2 <= reach * reach ? best : Closest();  // what lies beyond need not be the closest
+}
+
+/// Betters `best` by what is no farther than the bound, a squared length.
+template <class Bound>
+void SurfaceModel::search(const Vec3& p, Closest& best, const Bound& bound2) const {
+  tree_->bvh.nearest(p, bound2, [&](Id slot) {
+    const auto& [t, id] = tree_->slots[slot];
+    const Closest found = closestOnCorners(p, points_[t[0]], points_[t[1]], points_[t[2]], id);
+    if (found.distance2 < best.distance2 ||
+        (found.distance2 == best.distance2 && found.triangle < best.triangle))
+      best = found;
+  });
 }
 
 std::vector<Id> SurfaceModel::trianglesNear(const Box& box) const {

@@ -52,8 +52,11 @@ class SurfaceModel {
   std::uint64_t contentHash() const { return hash_; }
 
   /// Exact closest point; ties go to the smallest triangle id. seed, when given, must itself be a point of
-  /// the model: it only prunes the search and never changes the answer. Thread-safe.
-  Closest closest(const Vec3& p, const Closest& seed = {}) const;
+  /// the model: it only prunes the search and never changes the answer. Any point nearer than `enough` will
+  /// do where the closest is of no interest then. Thread-safe.
+  Closest closest(const Vec3& p, const Closest& seed = {}, double enough = 0) const;
+  /// The same where the distance is known to be at most `reach`; no triangle when that is wrong.
+  Closest closestWithin(const Vec3& p, double reach) const;
   /// Closest point on one triangle.
   Closest closestOnTriangle(const Vec3& p, Id triangle) const;
   /// Ids of the triangles whose boxes overlap the box, ascending.
@@ -66,6 +69,9 @@ class SurfaceModel {
   const Bvh& hierarchy() const;
 
  private:
+  template <class Bound>
+  void search(const Vec3& p, Closest& best, const Bound& bound2) const;
+
   struct Hierarchy;  // bounding-volume tree over the triangles
   std::vector<Vec3> points_;
   std::vector<Triangle> triangles_;

@@ -348,5 +348,21 @@ TEST(SurfaceModel, SameBitsForAnyNumberOfThreads) {
     });
 }
 
+// What is asked within a reach, or only for something near enough, is told as by the plain search.
+TEST(SurfaceModel, ClosestWithinAReachAndNearEnough) {
+  const Soup soup = randomSoup(500, 0.1, 17, 9);
+  const auto model = soup.model();
+  for (const Vec3& p : queries(*model, 200, 18)) {
+    const Closest exact = model->closest(p);
+    const double distance = std::sqrt(exact.distance2);
+    expectSame(model->closestWithin(p, 1.01 * distance + 1e-9), exact);
+    if (distance > 1e-3) EXPECT_EQ(model->closestWithin(p, 0.9 * distance).triangle, kNone);
+    expectSame(model->closest(p, {}, 0.99 * distance), exact);
+    const Closest any = model->closest(p, {}, 1.5 * distance + 1e-9);
+    EXPECT_LT(std::sqrt(any.distance2), 1.5 * distance + 1e-9);
+    EXPECT_EQ(any.distance2, model->closestOnTriangle(p, any.triangle).distance2);
+  }
+}
+
 }  // namespace
 }  // namespace pm
