@@ -6,27 +6,11 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <numeric>
 
 namespace pm {
 namespace {
-
-// Does the open segment p-q cross the triangle? Touching counts: doubt means "not in sight".
-bool crosses(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 d = q - p, ab = b - a, ac = c - a, n = ab.cross(ac);
-  const double denominator = -d.dot(n);
-  const double scale = d.norm() * n.norm();
-  if (std::abs(denominator) <= 1e-12 * scale) return false;  // parallel: seen edge-on
-  const Vec3 ap = p - a;
-  const double t = ap.dot(n) / denominator;
-  if (t < 0 || t > 1) return false;
-  const Vec3 e = -d.cross(ap);
-  const double v = ac.dot(e) / denominator, w = -ab.dot(e) / denominator;
-  constexpr double kRim = -1e-9;
-  return v >= kRim && w >= kRim && v + w <= 1 - kRim;
-}
 
 // An addition may only be undone once, so after this many rounds only removals go on; they must come to an
 // end.
@@ -159,13 +143,7 @@ int FrontRepair::gain(Id leaf) const {
 }
 
 bool FrontRepair::inSight(Id from, Id to) const {
-  const Vec3 p = tree_.box(from).centre(), q = tree_.box(to).centre();
-  Box path;
-  path.add(p);
-  path.add(q);
-  for (Id t : model_.trianglesNear(path))
-    if (crosses(p, q, model_.corner(t, 0), model_.corner(t, 1), model_.corner(t, 2))) return false;
-  return true;
+  return !model_.crosses(tree_.box(from).centre(), tree_.box(to).centre());
 }
 
 // A painted neighbour out of sight is on the other side of a wall: adding the leaf would make a way through.
@@ -236,15 +214,26 @@ Id FrontRepair::fill() {
   return static_cast<Id>(filled.size());
 }
 
+/// Part of a leaf's edge that its centre is away from the geometry, below 1.
+double FrontRepair::roominess(Id leaf) const {
+  const double edge = tree_.brick.edge(tree_.levels[leaf]);
+  return std::min(0.9, std::sqrt(model_.closest(tree_.box(leaf).centre()).distance2) / edge);
+}
+
+// A cell that mends no node on balance is added, too: it moves a forbidden node to the next cell of a row, at
+// whose end the node is gone. To remove cells instead tears the front where the domain is two or three cells
+// thick. Of equal gains the cell farthest inside is taken.
 bool FrontRepair::growAt(const Coord& node) {
   Id best = kNone;
-  int bestGain = 0;
+  double bestScore = 0;
   for (Id leaf : leavesAround(node)) {
     if (painted_[leaf] || !tree_.cut[leaf] || touched_[leaf] || leaf == best) continue;
     const int g = gain(leaf);
-    if (g > bestGain && regionBeside(leaf) != kNone && seesPaintedNeighbours(leaf)) {
+    if (g + 1 <= bestScore) continue;
+    const double score = g + roominess(leaf);
+    if (score > bestScore && regionBeside(leaf) != kNone && seesPaintedNeighbours(leaf)) {
       best = leaf;
-      bestGain = g;
+      bestScore = score;
     }
   }
   if (best == kNone) return false;

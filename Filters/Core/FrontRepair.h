@@ -57,6 +57,7 @@ class FrontRepair {
   /// The one region of the painted face neighbours, kNone when there are none or several.
   Id regionBeside(Id leaf) const;
   void add(Id leaf, Id region);
+  double roominess(Id leaf) const;
   bool growAt(const Coord& node);
   bool removeAt(const Coord& node);
   void markChanged(Id leaf);

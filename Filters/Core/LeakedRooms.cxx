@@ -342,9 +342,8 @@ LeakedRooms findLeakedRooms(const Octree& tree, const SurfaceModel& model, const
                             const std::vector<std::uint8_t>& chosen, const std::vector<Id>& home,
                             Monitor& monitor) {
   std::vector<std::uint8_t> wanted(tree.size());
-  tbb::parallel_for(Id(0), tree.size(), [&](Id leaf) {
-    wanted[leaf] = regions.ofLeaf[leaf] != kNone && chosen[regions.ofLeaf[leaf]];
-  });
+  tbb::parallel_for(Id(0), tree.size(),
+                    [&](Id leaf) { wanted[leaf] = !tree.cut[leaf] && chosen[regions.ofLeaf[leaf]]; });
   return RoomSearch(tree, model, regions, wanted, home, monitor).run();
 }
 

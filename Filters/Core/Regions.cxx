@@ -11,6 +11,7 @@
 #include <memory>
 #include <numeric>
 
+#include "ThinPlaces.h"
 #include "TriangleBox.h"
 
 namespace pm {
@@ -76,9 +77,10 @@ struct Tally {
       hi[a] = cells == 0 ? c[a] + span : std::max(hi[a], c[a] + span);
     }
     volume += Key(1) << (3 * (tree.brick.maxLevel - tree.levels[leaf]));
+    ++cells;
+    if (tree.cut[leaf]) return;  // it only links others
     open = open || touchesSides(tree, leaf);
     if (largest == kNone || tree.levels[leaf] < tree.levels[largest]) largest = leaf;
-    ++cells;
   }
 };
 
@@ -155,6 +157,7 @@ Regions findRegions(const Octree& tree, const SurfaceModel& model) {
   forLeaves(tree.size(), [&](Id leaf) { free[leaf] = !tree.cut[leaf]; });
   Regions regions;
   regions.ofLeaf = connectedLeaves(tree, free);
+  joinThinPlaces(tree, model, regions.ofLeaf);
   std::vector<Tally> tallies;
   for (Id leaf = 0; leaf < tree.size(); ++leaf) {
     const Id id = regions.ofLeaf[leaf];

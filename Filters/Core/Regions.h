@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The regions that painting finds: face-connected sets of leaves that no triangle touches (thesis 3.4.2).
+// The regions that painting finds: face-connected sets of leaves that no triangle touches (thesis 3.4.2),
+// and of those that link them in thin places (see ThinPlaces.h).
 //
 // All work is O(leaves), parallel, and gives the same numbers for any number of threads.
 #pragma once
@@ -22,7 +23,7 @@ struct PaintedRegion {
 };
 
 struct Regions {
-  std::vector<Id> ofLeaf;           ///< #L region of each leaf, kNone for a leaf that is cut
+  std::vector<Id> ofLeaf;           ///< #L region of each leaf, kNone for a leaf that is cut and no link
   std::vector<PaintedRegion> list;  ///< largest volume first, ties by the smaller leaf
 };
 

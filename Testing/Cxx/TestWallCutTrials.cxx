@@ -62,7 +62,7 @@ std::string whatFoamRefuses(const PolyMesh& mesh, const QualityLimits& limits) {
 
 TEST(WallCutTrials, SaysOfACutWhetherTheMeshStaysValid) {
   std::size_t holding = 0, breaking = 0;
-  for (unsigned seed = 0; seed < 40; ++seed) {
+  for (unsigned seed = 0; seed < 48; ++seed) {
     PolyMesh mesh = seed % 2 == 0 ? layer(seed) : shaken(seed);
     QualityLimits limits;
     limits.minTet = 1e-5;  // more than the mover's own, so that both judge alike
@@ -147,7 +147,7 @@ TEST(WallCutTrials, CutsThatDoNotHoldAreFoundAndUndone) {
 
 TEST(WallCutTrials, SaysOfAMergeWhetherTheMeshStaysValid) {
   std::size_t holding = 0, breaking = 0;
-  for (unsigned seed = 0; seed < 40; ++seed) {
+  for (unsigned seed = 0; seed < 48; ++seed) {
     PolyMesh mesh = seed % 2 == 0 ? layer(seed) : shaken(seed);
     QualityLimits limits;
     limits.minTet = 1e-5;
