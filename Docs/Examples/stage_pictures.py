@@ -2,8 +2,8 @@
 """Pictures of the filters' pages: stage_pictures.py FOLDER [NAME ...] runs the stages on the dirty pipe junction at 5 mm and draws
 after each the wall, coloured by patch, and a section; for OctreeDecompose the octree and the geometry in it, for OctreeReasons
 what made its cells small; for BoundaryRefine five layers at 3 mm, with corners enlarged; for MeshValidity two measures; for
-DetectFeatures the feature lines of two pipes pushed into each other; for Regions a body with three chambers. Run with pvpython and build/lib/python3/dist-packages on
-PYTHONPATH; without a display, under xvfb-run."""
+DetectFeatures the feature lines of two pipes pushed into each other; for Regions a body with three chambers; for ThinPlaces a
+shell 2.4 cells thick. Run with pvpython and build/lib/python3/dist-packages on PYTHONPATH; without a display, under xvfb-run."""
 import os
 import sys
 
@@ -19,7 +19,7 @@ from vtkmodules.vtkCommonTransforms import vtkTransform
 from vtkmodules.vtkFiltersCore import vtkAppendPolyData, vtkCellCenters, vtkThreshold, vtkTriangleFilter
 from vtkmodules.vtkFiltersGeneral import vtkTransformPolyDataFilter
 from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
-from vtkmodules.vtkFiltersSources import vtkCylinderSource
+from vtkmodules.vtkFiltersSources import vtkCylinderSource, vtkSphereSource
 
 JUNCTION = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Testing", "Data", "pipe_junction_dirty.stl")
 STAGES = ("OctreeDecompose", "PaintFront", "DummyLayer", "Project", "ResolveFeatures", "BoundaryRefine")
@@ -179,6 +179,51 @@ def regions():
     return [(430, [Panel("section, coloured by Zone", shown, eye, up, depth=0), key], (5, 1))]
 
 
+def ball(radius):
+    source = vtkSphereSource()
+    source.SetRadius(radius)
+    source.SetPhiResolution(90)
+    source.SetThetaResolution(90)
+    source.Update()
+    return source.GetOutput()
+
+
+def thin_places():
+    """A shell 2.4 cells thick: few leaves are whole in it, and the mesh is whole all the same."""
+    size, plane = 0.06, 0.31
+    shell, tree, mesh = vtkAppendPolyData(), pm.vtkOctreeDecompose(), pm.vtkProjectionMesh()
+    for radius in (1, 1 - 2.4 * size):
+        shell.AddInputData(ball(radius))
+    shell.Update()
+    for stage in (tree, mesh):
+        stage.SetInputData(shell.GetOutput())
+        stage.SetFeatureSize(size)
+        stage.SetSurfaceSize(size)
+    tree.Update()
+    middles = vtkCellCenters()
+    middles.SetInputConnection(tree.GetOutputPort())
+    middles.Update()
+    centres = vtk_to_numpy(middles.GetOutput().GetPoints().GetData())
+    away = np.linalg.norm(centres, axis=1)
+    whole = (vtk_to_numpy(tree.GetOutput().GetCellData().GetArray("Cut")) == 0) & (away < 1) & (away > 1 - 2.4 * size)
+    flags = numpy_to_vtk(whole.astype(np.uint8), deep=True)
+    flags.SetName("Whole")
+    tree.GetOutput().GetCellData().AddArray(flags)
+    mesh.SetRegion(2)  # of the points
+    mesh.AddSeedPoint(*centres[whole][0])
+    mesh.Update()
+    cut = pictures.cut_grid(tree.GetOutput(), Y, plane)
+    pictures.colour_cells(cut, vtk_to_numpy(cut.GetCellData().GetArray("Whole")))
+    line = figures.cut_line(shell.GetOutput(), Y, plane)
+    line.SetPosition(0, -1, 0)
+    eye, up = figures.SQUARE[Y]
+    quarter = (0, 1, 0, 0, 0, 1)
+    return [(430, [Panel("leaves wholly inside, in a section", pictures.section_actors(cut, [(1, 1, 1), pictures.COLOURS[3]]) + [line],
+                         eye, up, box=quarter, depth=0),
+                   figures.square("the mesh there", mesh.GetOutputDataObject(0), Y, plane, quarter),
+                   Panel("from outside", [figures.walls(mesh.GetOutputDataObject(1))], FROM)], (1, 1, 1))]
+
+
 def stage(name):
     grid, boundary = mesh_after(name)
     return [(430, [Panel("wall and patches", [figures.walls(boundary, colours=COLOURS)], FROM),
@@ -222,7 +267,7 @@ def validity():
 
 
 OTHERS = {"OctreeDecompose": octree, "OctreeReasons": reasons, "BoundaryRefine": layers, "MeshValidity": validity,
-          "DetectFeatures": feature_lines, "Regions": regions}
+          "DetectFeatures": feature_lines, "Regions": regions, "ThinPlaces": thin_places}
 
 
 def main(folder, names):
