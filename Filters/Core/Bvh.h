@@ -81,6 +81,9 @@ class Bvh {
   static constexpr int kStackSize = (kWidth - 1) * (kMaxSplitDepth + 36);
 
   Id addNode(const std::vector<BinaryNode>& tree, Id top);
+  /// entersOf(node): a function that tells of each of its children whether to enter; visit(slot) ends it.
+  template <class Enters, class Visit>
+  bool walk(const Enters& entersOf, const Visit& visit) const;
   FloatBox floatBox(const Box& box) const;
   Box laneBox(const Node& node, int lane) const;
   Id firstSlot(Id leaf) const { return kLeafSize * leaf; }
@@ -141,19 +144,18 @@ void Bvh::nearest(const Vec3& p, const Bound& bound2, const Visit& visit) const 
   }
 }
 
-template <class Visit>
-bool Bvh::anyOverlapping(const Box& box, const Visit& visit) const {
+template <class Enters, class Visit>
+bool Bvh::walk(const Enters& entersOf, const Visit& visit) const {
   if (nodes_.empty()) return false;
-  const FloatBox at = floatBox(box);
   std::array<Id, kStackSize> stack;
   int height = 0;
   stack[height++] = 0;
   while (height > 0) {
-    const Node& node = nodes_[stack[--height]];
-    const Floats d2 = distance2(node, at);
+    const Id at = stack[--height];
+    const auto enters = entersOf(at);
     for (int lane = 0; lane < kWidth; ++lane) {
-      const Id child = node.child[lane];
-      if (!(d2[lane] <= 0) || child == kNoChild) continue;
+      const Id child = nodes_[at].child[lane];
+      if (child == kNoChild || !enters(lane)) continue;
       if (child >= 0) {
         stack[height++] = child;
         continue;
@@ -165,27 +167,22 @@ bool Bvh::anyOverlapping(const Box& box, const Visit& visit) const {
   return false;
 }
 
+template <class Visit>
+bool Bvh::anyOverlapping(const Box& box, const Visit& visit) const {
+  const FloatBox of = nodes_.empty() ? FloatBox{} : floatBox(box);
+  const auto entersOf = [&](Id at) {
+    const Floats d2 = distance2(nodes_[at], of);
+    return [d2](int lane) { return d2[lane] <= 0; };
+  };
+  return walk(entersOf, visit);
+}
+
 template <class Enter, class Visit>
 bool Bvh::any(const Enter& enter, const Visit& visit) const {
-  if (nodes_.empty()) return false;
-  std::array<Id, kStackSize> stack;
-  int height = 0;
-  stack[height++] = 0;
-  while (height > 0) {
-    const Id at = stack[--height];
-    const Node& node = nodes_[at];
-    for (int lane = 0; lane < kWidth; ++lane) {
-      const Id child = node.child[lane];
-      if (child == kNoChild || !enter(kWidth * at + lane, laneBox(node, lane))) continue;
-      if (child >= 0) {
-        stack[height++] = child;
-        continue;
-      }
-      for (Id slot = firstSlot(~child); slot < endSlot(~child); ++slot)
-        if (visit(slot)) return true;
-    }
-  }
-  return false;
+  const auto entersOf = [&](Id at) {
+    return [&, at](int lane) { return enter(kWidth * at + lane, laneBox(nodes_[at], lane)); };
+  };
+  return walk(entersOf, visit);
 }
 
 template <class Value, class OfSlot, class Merge>
