@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <utility>
 
 #include "DisjointSets.h"
@@ -84,12 +85,14 @@ class Splitter {
       if (place.isNew()) mesh_.base[top.back()] = low.back();
     }
     for (std::size_t i = 0; i < path.faces.size(); ++i) {
-      const WallPlace &x = path.places[i], &y = path.places[i + 1];
+      const WallPlace& x = path.places[i];
       const Id cell = mesh_.owner[path.faces[i]];
       const Span<Id> faces = facesOfCell_[cell];
+      if (x.isNew()) cuts_.push_back({sideFace(mesh_, faces, x), top[i], low[i]});
+      if (path.isEdge()) return;
+      const WallPlace& y = path.places[i + 1];
       cuts_.push_back({path.faces[i], top[i], top[i + 1]});
       cuts_.push_back({lowerFace(mesh_, faces, below(mesh_, x), below(mesh_, y)), low[i], low[i + 1]});
-      if (x.isNew()) cuts_.push_back({sideFace(mesh_, faces, x), top[i], low[i]});
       halves_.push_back({cell, {top[i], top[i + 1], low[i + 1], low[i]}, {}});
     }
   }
@@ -97,7 +100,6 @@ class Splitter {
   void apply() {
     const auto byFace = [](const WallCut& x, const WallCut& y) { return x.face < y.face; };
     std::sort(cuts_.begin(), cuts_.end(), byFace);
-    std::sort(middles_.begin(), middles_.end());
     std::sort(halves_.begin(), halves_.end(), [](const auto& x, const auto& y) { return x.cell < y.cell; });
     const std::vector<Id> patch = std::exchange(mesh_.patch, {});
     old_ = std::exchange(mesh_.faces, {});
@@ -122,12 +124,14 @@ class Splitter {
   };
   using Edge = std::pair<Id, Id>;
 
+  /// Paths that cross the same edge share its new point.
   Id addPoint(const WallPlace& edge) {
     const Id id = static_cast<Id>(mesh_.points.size());
+    const auto [at, isFirst] = middles_.emplace(std::minmax(edge.a, edge.b), id);
+    if (!isFirst) return at->second;
     mesh_.points.push_back(0.5 * (mesh_.points[edge.a] + mesh_.points[edge.b]));
     mesh_.base.push_back(kNone);
     if (!mesh_.fixed.empty()) mesh_.fixed.push_back(mesh_.fixed[edge.a] & mesh_.fixed[edge.b]);
-    middles_.push_back({std::minmax(edge.a, edge.b), id});
     touched_.push_back(0);
     touched_[edge.a] = touched_[edge.b] = 1;
     return id;
@@ -140,9 +144,8 @@ class Splitter {
       const Id p = row[k], q = row[(k + 1) % row.size()];
       out.push_back(p);
       if (!touched_[p] || !touched_[q]) continue;
-      const std::pair<Edge, Id> key{std::minmax(p, q), 0};
-      const auto it = std::lower_bound(middles_.begin(), middles_.end(), key);
-      if (it != middles_.end() && it->first == key.first) out.push_back(it->second);
+      const auto it = middles_.find(std::minmax(p, q));
+      if (it != middles_.end()) out.push_back(it->second);
     }
   }
 
@@ -234,9 +237,9 @@ class Splitter {
 
   PolyMesh& mesh_;
   const Csr<Id>& facesOfCell_;
-  std::vector<char> touched_;                 // #P end of an edge with a new point
-  std::vector<WallCut> cuts_;                 // of faces of any kind
-  std::vector<std::pair<Edge, Id>> middles_;  // new points of edges
+  std::vector<char> touched_;   // #P end of an edge with a new point
+  std::vector<WallCut> cuts_;   // of faces of any kind
+  std::map<Edge, Id> middles_;  // new points of edges
   std::vector<Half> halves_;
   Csr<Id> old_;
   std::vector<Id> oldOwner_, wide_, first_, second_;
@@ -244,7 +247,18 @@ class Splitter {
 
 }  // namespace
 
+WallPath pathIn(const SubMesh& part, WallPath path) {
+  for (WallPlace& place : path.places) place = {part.pointOf(place.a), part.pointOf(place.b)};
+  for (Id& f : path.faces) f = part.boundaryFaceOf(f);
+  return path;
+}
+
 bool canSplitColumns(const PolyMesh& mesh, const Csr<Id>& facesOfCell, const WallPath& path) {
+  if (path.isEdge()) {
+    const WallPlace& edge = path.places[0];
+    return edge.isNew() && hasBelow(mesh, edge) &&
+           sideFace(mesh, facesOfCell[mesh.owner[path.faces[0]]], edge) != kNone;
+  }
   std::vector<Id> cells;
   for (std::size_t i = 0; i < path.faces.size(); ++i) {
     const WallPlace &x = path.places[i], &y = path.places[i + 1];

@@ -9,7 +9,7 @@
 
 #include <vector>
 
-#include "PolyMesh.h"
+#include "SubMesh.h"
 
 namespace pm {
 
@@ -19,11 +19,16 @@ struct WallPlace {
   bool isNew() const { return b != kNone; }
 };
 
-/// A line over the wall from place to place; faces[i] lies between places i and i + 1.
+/// A line over the wall from place to place; faces[i] lies between places i and i + 1. Or one edge, to be
+/// split alone: one place and a face beside it.
 struct WallPath {
   std::vector<WallPlace> places;
   std::vector<Id> faces;
+  bool isEdge() const { return places.size() == 1; }
 };
+
+/// The path in ids of a part that holds its faces.
+WallPath pathIn(const SubMesh& part, WallPath path);
 
 /// Are a and b neighbours in a face's row?
 bool hasEdge(Span<Id> row, Id a, Id b);
@@ -32,9 +37,9 @@ bool hasEdge(Span<Id> row, Id a, Id b);
 /// that holds the lower ends of both places; a new point's edge must have a quad between two columns below.
 bool canSplitColumns(const PolyMesh& mesh, const Csr<Id>& facesOfCell, const WallPath& path);
 
-/// Splits the columns below the paths, of which no two may touch the same cell. Two new points for each new
-/// place, in the order of the paths: one on the wall and its base below. Points and cells keep their ids, new
-/// ones come behind; faces get new ids.
+/// Splits the columns below the paths, of which no two may split the same. Two new points for each new place,
+/// in the order in which the paths first name them: one on the wall and its base below. Points and cells keep
+/// their ids, new ones come behind; faces get new ids.
 void splitColumns(PolyMesh& mesh, const Csr<Id>& facesOfCell, const std::vector<WallPath>& paths);
 
 }  // namespace pm

@@ -214,14 +214,6 @@ std::vector<Id> innerPoints(const SubMesh& part, const Csr<Id>& facesOfCell) {
   return points;
 }
 
-/// The path in ids of the part.
-WallPath pathIn(const SubMesh& part, WallPath path) {
-  for (WallPlace& place : path.places) place = {part.pointOf(place.a), part.pointOf(place.b)};
-  for (Id& f : path.faces)
-    f = static_cast<Id>(std::find(part.faces.begin(), part.faces.end(), f) - part.faces.begin());
-  return path;
-}
-
 /// Nodes on features stay on them; the new ones go to the curve.
 FeaturePaths BridgeBuilder::targetsIn(const SubMesh& part, const Gap& gap, const Proposal& proposal) const {
   const std::size_t oldPoints = part.points.size();

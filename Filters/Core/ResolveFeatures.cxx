@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "ChordSplits.h"
 #include "FeatureBridges.h"
 #include "FeatureCoverage.h"
 #include "FeaturePaths.h"
@@ -43,7 +44,7 @@ class Resolver {
 
   /// Traces and snaps; nodes that miss make room for others in the next round.
   void snap() {
-    PathHistory history;
+    PathHistory& history = history_;
     std::size_t missedBefore = std::numeric_limits<std::size_t>::max();
     for (int round = 0; round < options_.rounds; ++round) {
       monitor_.check(0.05 + 0.75 * round / options_.rounds, "feature snapping");
@@ -73,8 +74,10 @@ class Resolver {
   /// Brings faces nearer to the geometry: by cuts, then by moves of their nodes.
   void fit() {
     monitor_.check(0.85, "fitting faces");
+    splitEdges();
     cut(fittingCuts(*mover_, field_));
     fitWall(*mover_, wall_, field_, fitRoles());
+    mover_.reset();  // a quarter of the memory, and nothing moves from here on
   }
 
   const WallSurface& wall() const { return wall_; }
@@ -127,6 +130,19 @@ class Resolver {
       held.corner.resize(held.curve.size(), kNone);
       if (!built.more) break;
     }
+  }
+  /// New nodes where edges are chords of the geometry.
+  void splitEdges() {
+    snapper_.reset();
+    mover_.reset();
+    const auto inSight = [&](const Vec3& from, const Vec3& to) { return seesFrom(from, to); };
+    history_.curve.resize(wall_.size(), kNone);
+    history_.corner.resize(wall_.size(), kNone);
+    const std::vector<Id> curves =
+        splitChords(mesh_, {wall_, field_, graph_, history_, options_.limits, inSight});
+    if (!curves.empty()) wall_ = wallSurface(mesh_);
+    history_.curve.insert(history_.curve.end(), curves.begin(), curves.end());
+    history_.corner.resize(history_.curve.size(), kNone);
     mover_.emplace(mesh_, options_.limits, pointsNearWall(mesh_, 1), &monitor_);
   }
   void merge(const std::vector<WallMerge>& merges) {
@@ -160,6 +176,7 @@ class Resolver {
   std::optional<NodeMover> mover_;
   std::optional<FeatureSnapper> snapper_;
   std::vector<MissedTarget> missed_;
+  PathHistory history_;
 };
 
 /// Gaps below half a cell are seams of unstitched patches: the octree has sealed them. Wider ones are the

@@ -7,9 +7,12 @@ namespace pm {
 namespace {
 
 /// Place in an ascending list, kNone when it is not there.
-Id placeOf(const std::vector<Id>& list, Id value) {
-  const auto it = std::lower_bound(list.begin(), list.end(), value);
+Id placeOf(Span<Id> list, Id value) {
+  const Id* const it = std::lower_bound(list.begin(), list.end(), value);
   return it != list.end() && *it == value ? static_cast<Id>(it - list.begin()) : kNone;
+}
+Id placeOf(const std::vector<Id>& list, Id value) {
+  return placeOf(Span<Id>{list.data(), list.data() + list.size()}, value);
 }
 
 /// The cells' faces: internal ones of the part, then the boundary's, then those it is cut out along.
@@ -28,6 +31,15 @@ std::vector<Id> sortedFaces(const PolyMesh& mesh, const Csr<Id>& facesOfCell, co
 }  // namespace
 
 Id SubMesh::pointOf(Id whole) const { return placeOf(points, whole); }
+
+// Faces of a kind follow each other, ascending; those along the cut come last.
+Id SubMesh::boundaryFaceOf(Id whole) const {
+  const Id cut = static_cast<Id>(mesh.patchNames.size()) - 1, internal = mesh.internalFaces();
+  const auto end = std::find(mesh.patch.begin(), mesh.patch.end(), cut);
+  const Id* const first = faces.data() + internal;
+  const Id place = placeOf(Span<Id>{first, first + (end - mesh.patch.begin())}, whole);
+  return place == kNone ? kNone : internal + place;
+}
 
 SubMesh subMesh(const PolyMesh& mesh, const Csr<Id>& facesOfCell, std::vector<Id> cells) {
   SubMesh part;

@@ -14,6 +14,8 @@ struct SubMesh {
 
   /// Point of the part that a point of the whole mesh is, kNone when it is none.
   Id pointOf(Id whole) const;
+  /// The same for a boundary face of the whole mesh.
+  Id boundaryFaceOf(Id whole) const;
 };
 
 /// cells: ascending. facesOfCell: of the whole mesh. Points, cells and faces keep their order; zones are left

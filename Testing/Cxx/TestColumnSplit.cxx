@@ -73,6 +73,39 @@ TEST(ColumnSplit, ALineOverTwoSquaresMakesFourPrisms) {
   EXPECT_NE(wallFace(mesh, (0 + 1 + 1) / 3., (0 + 0 + 0.5) / 3.), kNone) << "a triangle beside the line";
 }
 
+TEST(ColumnSplit, AnEdgeAloneGivesBothColumnsOneSideMore) {
+  PolyMesh mesh = twoSquares();
+  const WallPath path{{{wallPoint(mesh, 1, 0), wallPoint(mesh, 1, 1)}}, {wallFace(mesh, 0.5, 0.5)}};
+  const Csr<Id> faces = cellFaces(mesh);
+  ASSERT_TRUE(canSplitColumns(mesh, faces, path));
+  const double volume = volumeOf(mesh);
+  const Id cells = mesh.cellCount, columns = splittableColumns(mesh), internal = mesh.internalFaces();
+  const std::size_t points = mesh.points.size();
+  splitColumns(mesh, faces, {path});
+  EXPECT_EQ(checkTopology(mesh), "");
+  EXPECT_EQ(mesh.cellCount, cells);
+  EXPECT_EQ(mesh.internalFaces(), internal + 1);
+  EXPECT_EQ(splittableColumns(mesh), columns);
+  EXPECT_EQ(mesh.points.size(), points + 2);
+  EXPECT_NEAR(volumeOf(mesh), volume, 1e-12);
+}
+
+TEST(ColumnSplit, PathsOverOneEdgeShareItsNewPoint) {
+  PolyMesh mesh = twoSquares();
+  const WallPlace middle{wallPoint(mesh, 1, 0), wallPoint(mesh, 1, 1)};
+  const WallPath left{{{wallPoint(mesh, 0, 0), kNone}, middle}, {wallFace(mesh, 0.5, 0.5)}};
+  const WallPath right{{middle, {wallPoint(mesh, 2, 1), kNone}}, {wallFace(mesh, 1.5, 0.5)}};
+  const Csr<Id> faces = cellFaces(mesh);
+  const double volume = volumeOf(mesh);
+  const Id cells = mesh.cellCount;
+  const std::size_t points = mesh.points.size();
+  splitColumns(mesh, faces, {{{middle}, left.faces}, left, right});
+  EXPECT_EQ(checkTopology(mesh), "");
+  EXPECT_EQ(mesh.cellCount, cells + 2);
+  EXPECT_EQ(mesh.points.size(), points + 2);
+  EXPECT_NEAR(volumeOf(mesh), volume, 1e-12);
+}
+
 TEST(ColumnSplit, RefusesWhatWouldLeaveNoTwoPrisms) {
   const PolyMesh mesh = twoSquares();
   const Csr<Id> faces = cellFaces(mesh);
@@ -83,6 +116,9 @@ TEST(ColumnSplit, RefusesWhatWouldLeaveNoTwoPrisms) {
   EXPECT_FALSE(can({{{a, kNone}, {b, kNone}}, {left}})) << "along an edge";
   EXPECT_FALSE(can({{{b, kNone}, {b, c}}, {left}})) << "from an end of the edge to its middle";
   EXPECT_FALSE(can({{{a, kNone}, {c, wallPoint(mesh, 0, 1)}}, {left}})) << "an edge on the domain's side";
+  EXPECT_TRUE(can({{{b, c}}, {left}})) << "an edge alone";
+  EXPECT_FALSE(can({{{c, wallPoint(mesh, 0, 1)}}, {left}})) << "that on the domain's side alone";
+  EXPECT_FALSE(can({{{a, kNone}}, {left}})) << "a point alone";
   EXPECT_FALSE(can({{{a, kNone}, {b, c}, {a, kNone}}, {left, left}})) << "twice through one column";
   EXPECT_FALSE(can({{{a, kNone}, {wallPoint(mesh, 2, 1), kNone}}, {right}})) << "a point of another face";
 }
@@ -146,6 +182,10 @@ TEST(SubMesh, MeasuresAsTheWhole) {
       EXPECT_NEAR(own.cells[i].volume, all.cells[cells[i]].volume, 1e-12);
       EXPECT_LT((own.cells[i].centre - all.cells[cells[i]].centre).norm(), 1e-12);
       EXPECT_LT(own.openness[i], 1e-9);
+    }
+    for (Id f = 0; f < part.mesh.faceCount(); ++f) {
+      const bool boundary = part.faces[f] >= mesh.internalFaces();
+      EXPECT_EQ(part.boundaryFaceOf(part.faces[f]), boundary ? f : kNone);
     }
     for (std::size_t p = 0; p < part.points.size(); ++p) {
       const Id base = mesh.base[part.points[p]];
