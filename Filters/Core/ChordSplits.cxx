@@ -62,7 +62,8 @@ class ChordSplitter {
   bool isOnFeature(Id row) const { return site_.held.curve[row] != kNone || site_.held.corner[row] != kNone; }
   Id commonCurve(Id row, Id other) const;
   std::vector<Id> oppositeNodes(Id face, const WallPlace& edge) const;
-  std::vector<Id> cellsAround(const Chord& chord) const;
+  std::vector<Id> cellsOf(const Chord& chord) const;
+  std::vector<Id> withNeighbours(std::vector<Id> cells) const;
 
   const PolyMesh& mesh_;
   const BridgeSite& site_;
@@ -116,18 +117,23 @@ Id ChordSplitter::commonCurve(Id row, Id other) const {
   return kNone;
 }
 
-/// The cells around a chord and its lower edge, and those across a face of them.
-std::vector<Id> ChordSplitter::cellsAround(const Chord& chord) const {
-  std::vector<Id> inner;
+/// The cells around a chord and its lower edge: those that its split changes.
+std::vector<Id> ChordSplitter::cellsOf(const Chord& chord) const {
+  std::vector<Id> cells;
   const auto addShared = [&](Id p, Id q) {
     const Span<Id> x = cellsOfPoint_[p], y = cellsOfPoint_[q];
-    std::set_intersection(x.begin(), x.end(), y.begin(), y.end(), std::back_inserter(inner));
+    std::set_intersection(x.begin(), x.end(), y.begin(), y.end(), std::back_inserter(cells));
   };
   addShared(chord.edge.a, chord.edge.b);
   addShared(mesh_.base[chord.edge.a], mesh_.base[chord.edge.b]);
-  std::vector<Id> cells = inner;
-  for (Id c : inner)
-    for (Id f : facesOfCell_[c]) {
+  sortUnique(cells);
+  return cells;
+}
+
+/// The cells, and those across a face of them.
+std::vector<Id> ChordSplitter::withNeighbours(std::vector<Id> cells) const {
+  for (std::size_t i = 0, count = cells.size(); i < count; ++i)
+    for (Id f : facesOfCell_[cells[i]]) {
       cells.push_back(mesh_.owner[f]);
       if (f < mesh_.internalFaces()) cells.push_back(mesh_.neighbour[f]);
     }
@@ -135,19 +141,26 @@ std::vector<Id> ChordSplitter::cellsAround(const Chord& chord) const {
   return cells;
 }
 
-/// Chords whose splits touch each other, directly or by others.
+/// Chords whose splits touch each other, directly or by others; large groups first, as they take longest.
 std::vector<std::vector<Chord>> ChordSplitter::groups(const std::vector<Chord>& chords) const {
   DisjointSets sets(chords.size());
-  std::vector<Id> first(mesh_.cellCount, kNone);
-  for (std::size_t i = 0; i < chords.size(); ++i)
-    for (Id c : cellsAround(chords[i])) {
-      if (first[c] == kNone) first[c] = static_cast<Id>(i);
-      sets.join(first[c], static_cast<Id>(i));
+  std::vector<Id> changing(mesh_.cellCount, kNone);  // first chord whose split changes the cell
+  const auto join = [&](Id chord, Id cell) {
+    if (changing[cell] != kNone) sets.join(changing[cell], chord);
+  };
+  for (Id i = 0; i < static_cast<Id>(chords.size()); ++i)
+    for (Id c : cellsOf(chords[i])) {
+      if (changing[c] == kNone) changing[c] = i;
+      join(i, c);
     }
+  for (Id i = 0; i < static_cast<Id>(chords.size()); ++i)
+    for (Id c : withNeighbours(cellsOf(chords[i]))) join(i, c);
   std::map<Id, std::vector<Chord>> ofRoot;
   for (std::size_t i = 0; i < chords.size(); ++i) ofRoot[sets.root(static_cast<Id>(i))].push_back(chords[i]);
   std::vector<std::vector<Chord>> groups;
   for (auto& [root, group] : ofRoot) groups.push_back(std::move(group));
+  std::stable_sort(groups.begin(), groups.end(),
+                   [](const auto& x, const auto& y) { return x.size() > y.size(); });
   return groups;
 }
 
@@ -204,9 +217,8 @@ bool place(NodeMover& mover, Id node, const Vec3& target) {
 Splits ChordSplitter::tryOut(std::vector<Chord> chords) const {
   std::vector<Id> cells;
   for (const Chord& c : chords)
-    for (Id cell : cellsAround(c)) cells.push_back(cell);
-  sortUnique(cells);
-  const SubMesh part = subMesh(mesh_, facesOfCell_, std::move(cells));
+    for (Id cell : cellsOf(c)) cells.push_back(cell);
+  const SubMesh part = subMesh(mesh_, facesOfCell_, withNeighbours(std::move(cells)));
   const Csr<Id> facesOfCell = cellFaces(part.mesh);
   const Id old = static_cast<Id>(part.points.size());
   while (!chords.empty()) {

@@ -75,7 +75,11 @@ bool parts(Span<Id> row, const WallPlace& x, const WallPlace& y) {
 class Splitter {
  public:
   Splitter(PolyMesh& mesh, const Csr<Id>& facesOfCell)
-      : mesh_(mesh), facesOfCell_(facesOfCell), touched_(mesh.points.size(), 0) {}
+      : mesh_(mesh),
+        facesOfCell_(facesOfCell),
+        touched_(mesh.points.size(), 0),
+        isHalved_(mesh.cellCount, 0),
+        isCut_(mesh.faceCount(), 0) {}
 
   void plan(const WallPath& path) {
     std::vector<Id> top, low;
@@ -93,6 +97,7 @@ class Splitter {
       const WallPlace& y = path.places[i + 1];
       cuts_.push_back({path.faces[i], top[i], top[i + 1]});
       cuts_.push_back({lowerFace(mesh_, faces, below(mesh_, x), below(mesh_, y)), low[i], low[i + 1]});
+      isHalved_[cell] = 1;
       halves_.push_back({cell, {top[i], top[i + 1], low[i + 1], low[i]}, {}});
     }
   }
@@ -106,6 +111,8 @@ class Splitter {
     oldOwner_ = std::exchange(mesh_.owner, {});
     const std::vector<Id> neighbour = std::exchange(mesh_.neighbour, {});
     const Id internal = static_cast<Id>(neighbour.size());
+    for (const WallCut& c : cuts_) isCut_[c.face] = 1;
+    reserve();
     for (Id f = 0; f < internal; ++f) addPieces(f, neighbour[f]);
     for (Half& half : halves_) addSide(half);
     for (Id f = internal; f < old_.rows(); ++f)
@@ -149,22 +156,31 @@ class Splitter {
     }
   }
 
+  void reserve() {
+    const std::size_t faces = old_.rows() + cuts_.size() + halves_.size();
+    mesh_.faces.offsets.reserve(faces + 1);
+    mesh_.faces.values.reserve(old_.values.size() + 6 * (cuts_.size() + halves_.size()));
+    mesh_.owner.reserve(faces);
+    mesh_.neighbour.reserve(faces);
+  }
+
   /// What becomes of an old face; returns how many.
   Id addPieces(Id f, Id neighbour) {
-    widen(old_[f], wide_);
+    const Span<Id> row = old_[f];
+    if (std::none_of(row.begin(), row.end(), [&](Id p) { return touched_[p] != 0; })) {
+      if (!isCut_[f]) return add(row, oldOwner_[f], neighbour), 1;
+    }
+    widen(row, wide_);
+    if (!isCut_[f]) return add(spanOf(wide_), oldOwner_[f], neighbour), 1;
     const auto cut = std::lower_bound(cuts_.begin(), cuts_.end(), f,
                                       [](const WallCut& c, Id face) { return c.face < face; });
-    if (cut == cuts_.end() || cut->face != f) {
-      add(wide_, oldOwner_[f], neighbour);
-      return 1;
-    }
-    cutRow({wide_.data(), wide_.data() + wide_.size()}, cut->a, cut->b, first_, second_);
-    add(first_, oldOwner_[f], neighbour);
-    add(second_, oldOwner_[f], neighbour);
+    cutRow(spanOf(wide_), cut->a, cut->b, first_, second_);
+    add(spanOf(first_), oldOwner_[f], neighbour);
+    add(spanOf(second_), oldOwner_[f], neighbour);
     return 2;
   }
 
-  void add(const std::vector<Id>& row, Id owner, Id neighbour) {
+  void add(Span<Id> row, Id owner, Id neighbour) {
     const Id f = mesh_.faces.rows();
     mesh_.faces.push(row);
     mesh_.owner.push_back(owner);
@@ -174,9 +190,10 @@ class Splitter {
   }
 
   Half* halfOf(Id cell) {
+    if (cell == kNone || cell >= static_cast<Id>(isHalved_.size()) || !isHalved_[cell]) return nullptr;
     const auto it = std::lower_bound(halves_.begin(), halves_.end(), cell,
                                      [](const Half& h, Id c) { return h.cell < c; });
-    return it != halves_.end() && it->cell == cell ? &*it : nullptr;
+    return &*it;
   }
 
   void addSide(Half& half) {
@@ -241,6 +258,7 @@ class Splitter {
   std::vector<WallCut> cuts_;   // of faces of any kind
   std::map<Edge, Id> middles_;  // new points of edges
   std::vector<Half> halves_;
+  std::vector<char> isHalved_, isCut_;  // #C, #F
   Csr<Id> old_;
   std::vector<Id> oldOwner_, wide_, first_, second_;
 };

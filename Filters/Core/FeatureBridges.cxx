@@ -339,7 +339,7 @@ BridgesBuilt bridgeGaps(PolyMesh& mesh, const BridgeSite& site, std::set<GapKey>
       hopeless.insert(key(gaps[i]));
   const std::vector<Bridge> chosen = independent(bridges, mesh.cellCount);
   const std::vector<char> changed = changedPoints(mesh, builder.facesOfCell(), chosen);
-  BridgesBuilt built{{}, chosen.size() < found};
+  BridgesBuilt built{chosen.size(), {}, chosen.size() < found};
   for (auto gap = hopeless.begin(); gap != hopeless.end();) {
     const bool again = changed[(*gap)[1]] || changed[(*gap)[2]];
     built.more |= again;

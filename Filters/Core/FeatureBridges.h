@@ -41,6 +41,7 @@ struct BridgeSite {
 using GapKey = std::array<Id, 3>;
 
 struct BridgesBuilt {
+  std::size_t count = 0;   ///< bridges; one over a single face has no new node
   std::vector<Id> curves;  ///< of each new wall node in ascending order, the curve it lies on
   bool more = false;       ///< what was built may let others hold
 };

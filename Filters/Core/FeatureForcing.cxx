@@ -7,11 +7,6 @@
 #include "FeatureSnapper.h"
 
 namespace pm {
-namespace {
-
-Span<Id> spanOf(const std::vector<Id>& ids) { return {ids.data(), ids.data() + ids.size()}; }
-
-}  // namespace
 
 void FeatureSnapper::force() {
   // Corners first: no other place would do for them, and no other node.

@@ -26,10 +26,6 @@ float rounded(double value, double limit) {
 /// Such a value within its limit or no worse than before.
 bool holds(float now, double limit, float before) { return now >= limit || now >= before; }
 
-Span<CellFace> spanOf(const std::vector<CellFace>& faces) {
-  return {faces.data(), faces.data() + faces.size()};
-}
-
 }  // namespace
 
 const char* describe(Refusal refusal) {

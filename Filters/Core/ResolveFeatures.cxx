@@ -23,7 +23,7 @@ namespace {
 
 // Another round is worth it when no more than this part of the nodes that missed still does; and while they
 // are few, of all wall nodes.
-constexpr double kWorthARound = 0.9, kFew = 0.002;
+constexpr double kWorthARound = 0.85, kFew = 0.002;
 constexpr int kBridgeRounds = 3;  // bridges beside each other are built one after the other
 
 /// The stage's state. What knows the wall's faces is brought up to date when faces are cut.
@@ -124,7 +124,7 @@ class Resolver {
     for (int round = 0; round < kBridgeRounds; ++round) {
       const BridgesBuilt built =
           bridgeGaps(mesh_, {wall_, field_, graph_, held, options_.limits, inSight}, hopeless);
-      if (built.curves.empty()) break;
+      if (built.count == 0) break;
       wall_ = wallSurface(mesh_);
       held.curve.insert(held.curve.end(), built.curves.begin(), built.curves.end());
       held.corner.resize(held.curve.size(), kNone);

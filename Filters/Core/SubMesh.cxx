@@ -11,9 +11,7 @@ Id placeOf(Span<Id> list, Id value) {
   const Id* const it = std::lower_bound(list.begin(), list.end(), value);
   return it != list.end() && *it == value ? static_cast<Id>(it - list.begin()) : kNone;
 }
-Id placeOf(const std::vector<Id>& list, Id value) {
-  return placeOf(Span<Id>{list.data(), list.data() + list.size()}, value);
-}
+Id placeOf(const std::vector<Id>& list, Id value) { return placeOf(spanOf(list), value); }
 
 /// The cells' faces: internal ones of the part, then the boundary's, then those it is cut out along.
 std::vector<Id> sortedFaces(const PolyMesh& mesh, const Csr<Id>& facesOfCell, const std::vector<Id>& cells) {

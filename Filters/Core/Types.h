@@ -75,6 +75,10 @@ struct Span {
   bool empty() const { return first == last; }
   const T& operator[](std::size_t i) const { return first[i]; }
 };
+template <class T>
+Span<T> spanOf(const std::vector<T>& values) {
+  return {values.data(), values.data() + values.size()};
+}
 
 /// Rows of different length in two flat arrays (compressed sparse rows): row i is values[offsets[i] ..
 /// offsets[i+1]).

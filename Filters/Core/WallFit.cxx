@@ -42,7 +42,7 @@ class WallFitter {
 
   /// Moves nodes along their normals so that the points around each lie as far before the geometry as behind.
   void shift(const std::vector<Id>& nodes) {
-    const Ways ways = waysToGeometry();
+    const Ways ways = waysToGeometry(nodes);
     std::vector<Vec3> targets(nodes.size());
     tbb::parallel_for(std::size_t(0), nodes.size(), [&](std::size_t i) {
       const Id row = wall_.rowOf[nodes[i]];
@@ -77,8 +77,8 @@ class WallFitter {
       }
   }
 
-  /// Of these nodes, those that have found a better place since the last call, and those beside one.
-  std::vector<Id> unsettled(const std::vector<Id>& nodes) {
+  /// Of these nodes, those that have found a better place in the last sweep, and those beside one.
+  std::vector<Id> unsettled(const std::vector<Id>& nodes) const {
     std::vector<Id> left;
     for (Id p : nodes) {
       const Id row = wall_.rowOf[p];
@@ -86,19 +86,24 @@ class WallFitter {
       if (found_[row] || std::any_of(beside.begin(), beside.end(), [&](Id n) { return found_[n] != 0; }))
         left.push_back(p);
     }
-    std::fill(found_.begin(), found_.end(), 0);
     return left;
   }
+  void startSweep() { std::fill(found_.begin(), found_.end(), 0); }
 
  private:
-  /// From the representative points of the wall to the geometry.
+  /// From the representative points of the wall to the geometry; only of those around the nodes that shift.
   struct Ways {
     std::vector<Eigen::Vector3f> node, edge, face;  // #W, #neighbours.values, #boundary faces
   };
 
-  Ways waysToGeometry() const {
+  Ways waysToGeometry(const std::vector<Id>& nodes) const {
     const PolyMesh& mesh = mover_.mesh();
     const Csr<Id>& beside = wall_.neighbours;
+    std::vector<char> shifts(wall_.size(), 0), isAround(mesh.boundaryFaces(), 0);
+    for (Id p : nodes) {
+      shifts[wall_.rowOf[p]] = 1;
+      for (Id f : wall_.faces[wall_.rowOf[p]]) isAround[f - mesh.internalFaces()] = 1;
+    }
     Ways ways;
     ways.node.resize(wall_.size());
     ways.edge.resize(beside.values.size());
@@ -108,10 +113,10 @@ class WallFitter {
     };
     tbb::parallel_for(Id(0), wall_.size(), [&](Id row) {
       const Vec3& x = mover_.point(wall_.nodes[row]);
-      ways.node[row] = way(x);
+      if (shifts[row]) ways.node[row] = way(x);
       for (Id k = beside.offsets[row]; k < beside.offsets[row + 1]; ++k) {
         const Id other = beside.values[k];
-        if (other < row) continue;
+        if (other < row || !(shifts[row] || shifts[other])) continue;
         const Span<Id> back = beside[other];
         const auto twin = std::lower_bound(back.begin(), back.end(), row) - back.begin();
         ways.edge[k] = way(0.5 * (x + mover_.point(wall_.nodes[other])));
@@ -119,7 +124,7 @@ class WallFitter {
       }
     });
     tbb::parallel_for(Id(0), mesh.boundaryFaces(), [&](Id b) {
-      if (mesh.isWallPatch(mesh.patch[b])) ways.face[b] = way(mover_.faceCentre(mesh.internalFaces() + b));
+      if (isAround[b]) ways.face[b] = way(mover_.faceCentre(mesh.internalFaces() + b));
     });
     return ways;
   }
@@ -207,9 +212,10 @@ void fitWall(NodeMover& mover, const WallSurface& wall, const DistanceField& fie
   WallFitter fitter(mover, wall, field);
   fitter.shift(free);
   for (int sweep = 0; sweep < kSearchSweeps; ++sweep) {
+    fitter.startSweep();
     mover.forEach(mover.blocks(searching), [&](Id p) { fitter.search(p); });
+    fitter.shift(fitter.unsettled(free));
     searching = fitter.unsettled(searching);
-    fitter.shift(free);
   }
 }
 

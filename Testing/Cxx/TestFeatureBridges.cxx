@@ -46,7 +46,7 @@ class RidgeBetweenNodes : public ::testing::Test {
   RidgeBetweenNodes() : model_(roof()), field_(*model_, 1), graph_(detectFeatures(*model_, {})) {}
 
   /// Bridges between the nodes above these places, taken to lie on the ridge.
-  std::vector<Id> bridge(PolyMesh& mesh, const std::vector<Eigen::Vector2d>& places, bool seen = true) {
+  BridgesBuilt build(PolyMesh& mesh, const std::vector<Eigen::Vector2d>& places, bool seen = true) {
     const WallSurface wall = wallSurface(mesh);
     PathHistory held;
     held.curve.assign(wall.nodes.size(), kNone);
@@ -56,7 +56,10 @@ class RidgeBetweenNodes : public ::testing::Test {
         if (mesh.points[wall.nodes[row]].head<2>() == place) held.curve[row] = 0;
     const QualityLimits limits;
     const auto sees = [&](const Vec3&, const Vec3&) { return seen; };
-    return bridgeGaps(mesh, {wall, field_, graph_, held, limits, sees}, hopeless_).curves;
+    return bridgeGaps(mesh, {wall, field_, graph_, held, limits, sees}, hopeless_);
+  }
+  std::vector<Id> bridge(PolyMesh& mesh, const std::vector<Eigen::Vector2d>& places, bool seen = true) {
+    return build(mesh, places, seen).curves;
   }
 
   std::unique_ptr<SurfaceModel> model_;
@@ -82,6 +85,16 @@ TEST_F(RidgeBetweenNodes, GetsANodeAndBothEdges) {
   EXPECT_EQ(onRidge, 2);
   const LayerColumns columns(mesh);
   for (Id c = 0; c < columns.count(); ++c) EXPECT_TRUE(columns.canSplit(c));
+}
+
+TEST_F(RidgeBetweenNodes, IsBridgedOverOneFaceWithoutANewNode) {
+  PolyMesh mesh = roofedBlock();
+  const Id cells = mesh.cellCount;
+  const BridgesBuilt built = build(mesh, {{1, 1}, {2, 2}});
+  EXPECT_EQ(built.count, 1u);
+  EXPECT_TRUE(built.curves.empty());
+  EXPECT_EQ(mesh.cellCount, cells + 1);
+  EXPECT_EQ(whatIsWrong(mesh), "");
 }
 
 TEST_F(RidgeBetweenNodes, StaysAsItIsWithoutAGapOrASight) {
